@@ -1,0 +1,7 @@
+# Uses ccache when it is installed. The sloppiness settings are what ccache's manual asks for with precompiled headers.
+find_program(ASTROID_CCACHE ccache)
+if(ASTROID_CCACHE)
+  set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      ${ASTROID_CCACHE})
+endif()

@@ -1,0 +1,47 @@
+# astroid_add_module(<name> SOURCES ... DEPENDS <modules> LIBRARIES <public libs> PRIVATE_LIBRARIES <libs>)
+#   A library astroid_<name> (alias astroid::<name>) whose public headers live in include/astroid/<name>/ and each compile alone.
+#   The dependency is refused unless the layering of docs/architecture.md allows it.
+# astroid_add_test(<label> <module> SOURCES ... LIBRARIES ...)
+#   A GoogleTest program <label>_<module>_test from tests/<label>/<module>/, every test registered with ctest under <label>.
+
+set(ASTROID_LAYER_core "")
+set(ASTROID_LAYER_catalogues core)
+set(ASTROID_LAYER_sim core catalogues)
+set(ASTROID_LAYER_photometry core catalogues)
+set(ASTROID_LAYER_analysis core catalogues sim photometry)
+set(ASTROID_LAYER_reports core catalogues sim photometry analysis)
+set(ASTROID_LAYER_pipeline core catalogues sim photometry analysis reports)
+set(ASTROID_LAYER_apps core catalogues sim photometry analysis reports pipeline)
+
+function(astroid_add_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;DEPENDS;LIBRARIES;PRIVATE_LIBRARIES" ${ARGN})
+  foreach(dependency IN LISTS ARG_DEPENDS)
+    if(NOT dependency IN_LIST ASTROID_LAYER_${name})
+      message(FATAL_ERROR "Layering: ${name} may not depend on ${dependency} (allowed: ${ASTROID_LAYER_${name}})")
+    endif()
+  endforeach()
+  list(TRANSFORM ARG_DEPENDS PREPEND astroid::)
+  add_library(astroid_${name} STATIC ${ARG_SOURCES})
+  add_library(astroid::${name} ALIAS astroid_${name})
+  file(GLOB_RECURSE headers CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/include/*.hpp)
+  target_sources(astroid_${name} PUBLIC FILE_SET HEADERS BASE_DIRS include FILES ${headers})
+  set_target_properties(astroid_${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON)
+  target_include_directories(astroid_${name} PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}/src)
+  target_link_libraries(astroid_${name} PUBLIC astroid::options ${ARG_DEPENDS} ${ARG_LIBRARIES}
+                                        PRIVATE ${ARG_PRIVATE_LIBRARIES})
+endfunction()
+
+function(astroid_add_test label module)
+  cmake_parse_arguments(ARG "" "TIMEOUT" "SOURCES;LIBRARIES" ${ARGN})
+  set(target ${label}_${module}_test)
+  if(NOT ARG_TIMEOUT)
+    set(ARG_TIMEOUT 300)
+  endif()
+  add_executable(${target} ${ARG_SOURCES})
+  target_link_libraries(${target} PRIVATE astroid::options astroid_test_support ${ARG_LIBRARIES} GTest::gmock_main)
+  if(NOT ASTROID_SANITIZER)
+    target_precompile_headers(${target} REUSE_FROM astroid_test_pch)
+  endif()
+  gtest_discover_tests(${target} TEST_PREFIX "${label}." DISCOVERY_TIMEOUT 60
+                       PROPERTIES LABELS ${label} TIMEOUT ${ARG_TIMEOUT})
+endfunction()

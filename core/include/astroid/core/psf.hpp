@@ -1,0 +1,69 @@
+// Point-spread functions as what photometry needs of them: the fraction of a star's flux in each pixel.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "astroid/core/geometry.hpp"
+#include "astroid/core/image.hpp"
+
+namespace astroid {
+
+/// A point-spread function integrated over pixels. Implementations are immutable and may be shared by threads.
+class PixelPsf {
+ public:
+  PixelPsf() = default;
+  PixelPsf(const PixelPsf&) = delete;
+  PixelPsf& operator=(const PixelPsf&) = delete;
+  PixelPsf(PixelPsf&&) = delete;
+  PixelPsf& operator=(PixelPsf&&) = delete;
+  virtual ~PixelPsf() = default;
+
+  /// Fractions of the flux of a star at `centre` in the pixels of `box`, row by row.
+  ///
+  /// Normalised on infinite support: the fractions of a box are never renormalised. The value of a pixel depends
+  /// only on the star's position and the pixel, not on the box, bit for bit.
+  /// @param fractions  [out] shape (box.ny, box.nx), unit 1.
+  virtual void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const = 0;
+
+  /// Half-width in pixels of the square stamp around the star outside of which less than `lost` of its flux falls,
+  /// for any sub-pixel position.  @param lost  in (0, 1)
+  [[nodiscard]] virtual double stamp_half_width(double lost) const = 0;
+
+  /// Upper bound of the relative error of an aperture's flux due to the approximation of this renderer (0 if exact).
+  [[nodiscard]] virtual double approximation_error() const = 0;
+
+  [[nodiscard]] virtual std::string description() const = 0;
+};
+
+/// The pixels of a stamp of half-width r around a star: every pixel whose area touches the square.
+[[nodiscard]] Rectangle stamp_box(PixelPosition centre, double half_width);
+
+/// Circular Gaussian, integrated exactly as a product of two differences of erf (renderer `analytic`).
+///
+/// @param sigma  px, >= 0; below 1e-8 px the star is a point: its pixel gets all, an edge half, a corner a quarter.
+/// @accuracy     1e-12 relative in every pixel, also far in the wing, where erfc is used on the far side.
+std::shared_ptr<const PixelPsf> make_gaussian_psf(double sigma);
+
+/// A PSF given as a table: surface brightness on a grid finer than the pixel.
+struct PsfTable {
+  Image<double, unit::Relative> samples;  ///< any normalisation; must be finite and have a positive sum
+  double samples_per_pixel = 1.0;
+  double centre_x = 0.0;                  ///< 0-based sample coordinates of the PSF's origin
+  double centre_y = 0.0;
+};
+
+/// Reads a PSF image: first image HDU; samples per pixel from keyword SUBPIX (or PIXSAMP, or CDELT1 in px), origin from
+/// CRPIX1/2 (1-based) or the geometric centre of the image.
+/// @throws InputError naming the file and keyword; EnvironmentError when the file cannot be read.
+PsfTable read_psf_table(const std::string& path);
+
+/// Pixel-integrated library over sub-pixel phases with four-point Lagrange interpolation (renderer `prf`).
+///
+/// The table's flux per sample is kept exactly: its running integral is a tensor cubic spline through the sample edges.
+/// @param accuracy  relative flux error allowed to the interpolation; decides the number of phases.
+/// @param phases    number of phases per axis, or 0 to let `accuracy` decide.
+std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases = 0);
+
+}  // namespace astroid
