@@ -1,0 +1,123 @@
+// Linear flux estimators: built once from what the ground believes, applied to every exposure as a gather.
+//
+//   flux = sum_i weight_i * (counts_i - bias) * gain - offset          [e- per exposure]
+//
+// Aperture, binary mask, weighted mask and local background are all of this form, so their noise is known exactly.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "astroid/core/frame.hpp"
+#include "astroid/core/geometry.hpp"
+#include "astroid/core/mission.hpp"
+#include "astroid/core/noise.hpp"
+#include "astroid/core/psf.hpp"
+
+namespace astroid {
+
+/// What can be wrong with one measured flux; bits, each named in docs/flags.md and decoded in the report.
+namespace measurement_flag {
+inline constexpr std::uint32_t kEdge = 1U << 0;         ///< the aperture is cut by the edge of the frame or window
+inline constexpr std::uint32_t kSaturated = 1U << 1;    ///< a pixel of the aperture is at full well or clipped by the ADC
+inline constexpr std::uint32_t kBadPixel = 1U << 2;     ///< a pixel of the aperture is defective or not finite
+inline constexpr std::uint32_t kContaminated = 1U << 3; ///< neighbours give more than the configured share of the flux
+inline constexpr std::uint32_t kNoBackground = 1U << 4; ///< too few background pixels: the fallback was used
+inline constexpr std::uint32_t kOutside = 1U << 5;      ///< the star is not on the frame: flux is NaN
+inline constexpr std::uint32_t kNoFlux = 1U << 6;       ///< no pixel with light of the target: flux is NaN
+}  // namespace measurement_flag
+
+/// A star as the ground believes it to be.
+struct FieldStar {
+  std::string id;
+  PixelPosition position;
+  double electrons = 0.0;  ///< per exposure, all of the PSF
+};
+
+/// Everything the ground believes when it builds estimators.
+struct GroundModel {
+  std::span<const FieldStar> stars;      ///< targets and every contaminant
+  std::span<const std::size_t> targets;  ///< indices into `stars`, in the order of the results
+  const PixelPsf* psf = nullptr;
+  PixelNoise noise;                      ///< background is the expected sky + dark, e- per pixel and exposure
+  Gain gain{1.0};
+  Adu bias;
+};
+
+/// Expected electrons and variance (e-, e-²) of one estimator in one exposure, cause by cause.
+struct EstimatorBudget {
+  double target = 0.0;            ///< weighted electrons of the target
+  double contaminants = 0.0;      ///< weighted electrons of all other stars
+  double var_target = 0.0;        ///< photon noise of the target
+  double var_contaminants = 0.0;
+  double var_background = 0.0;    ///< photon noise of sky and dark under the aperture
+  double var_readout = 0.0;
+  double var_quantisation = 0.0;
+  double var_background_estimate = 0.0;  ///< noise of the local background, 0 if it is known
+  [[nodiscard]] double variance() const {
+    return var_target + var_contaminants + var_background + var_readout + var_quantisation + var_background_estimate;
+  }
+};
+
+/// One term of an estimator: a pixel in the frame's buffer and its weight.
+struct EstimatorTerm {
+  std::uint32_t pixel = 0;
+  float weight = 0.0F;
+};
+
+/// The estimator of one target and what is known of it beforehand.
+struct StarEstimator {
+  std::size_t star = 0;              ///< index into GroundModel::stars
+  std::size_t region = 0;            ///< of the layout
+  Rectangle window;                  ///< where the mask could grow
+  std::vector<EstimatorTerm> terms;  ///< aperture pixels first
+  std::size_t aperture_terms = 0;    ///< the rest are background pixels
+  double offset = 0.0;               ///< e-, the known background under the aperture
+  int mask_pixels = 0;               ///< pixels with weight > 0 in the aperture
+  double enclosed_fraction = 0.0;    ///< weighted fraction of the target's flux, sum w p
+  double spr_total = 0.0;            ///< F20: contaminants / all stars, sky excluded
+  double nsr_exposure = 0.0;         ///< sqrt(variance) / target, one exposure, one camera (F7 where background is known)
+  double gradient_x = 0.0;           ///< d ln F / dx of target and contaminants moving together, 1/px
+  double gradient_y = 0.0;
+  double prnu_gradient_x = 0.0;      ///< sqrt(sum (w dI/dx)²) / sum w I of the target, 1/px (F27)
+  double prnu_gradient_y = 0.0;
+  double prnu_static = 0.0;          ///< sqrt(sum (w p)²) / sum w p (F28)
+  EstimatorBudget budget;
+  std::uint32_t flags = 0;           ///< measurement_flag bits that hold for every exposure
+};
+
+/// Builds the estimator of every target.
+///
+/// @param layout  pixels that the frames will have.
+/// @throws InputError when the settings contradict the layout.
+std::vector<StarEstimator> build_estimators(const PixelLayout& layout, const GroundModel& model,
+                                            const PhotometrySettings& settings);
+
+/// The estimators of a set of targets as contiguous arrays, ready to be applied.
+class EstimatorSet {
+ public:
+  EstimatorSet(std::span<const StarEstimator> estimators, Gain gain, Adu bias);
+  [[nodiscard]] std::size_t size() const { return first_.size() - 1; }
+
+  /// Measures all targets on one frame.
+  /// @param flux   [out] shape (size()), e- per exposure; NaN where it cannot be measured.
+  /// @param flags  [out] shape (size()), measurement_flag bits.
+  /// @thread safe
+  void apply(const Frame& frame, std::span<double> flux, std::span<std::uint32_t> flags) const;
+
+ private:
+  std::vector<std::size_t> first_;  // terms of target i are first_[i] … first_[i+1]-1
+  std::vector<std::size_t> aperture_end_;
+  std::vector<std::uint32_t> pixel_;
+  std::vector<float> weight_;
+  std::vector<double> offset_;
+  std::vector<double> weight_sum_;
+  std::vector<std::uint32_t> flags_;
+  double gain_;
+  double bias_;
+};
+
+}  // namespace astroid
