@@ -17,13 +17,13 @@ enum class ExitCode : int {
 
 /// One thing that is wrong with the user's input. Fields that do not apply are empty (line: 0).
 struct Problem {
-  std::string file;
+  std::string file{};
   long line = 0;
-  std::string parameter;   ///< "CCD/ReadoutNoise", "column ra"
-  std::string value;       ///< as written
-  std::string expected;    ///< what would be right, with unit and range
-  std::string message;     ///< one sentence
-  std::string suggestion;  ///< "did you mean ReadoutNoise?", may be empty
+  std::string parameter{};   ///< "CCD/ReadoutNoise", "column ra"
+  std::string value{};       ///< as written
+  std::string expected{};    ///< what would be right, with unit and range
+  std::string message{};     ///< one sentence
+  std::string suggestion{};  ///< "did you mean ReadoutNoise?", may be empty
 
   /// "file:line: parameter = value: message; expected …; did you mean …" with the parts that are there.
   [[nodiscard]] std::string text() const;

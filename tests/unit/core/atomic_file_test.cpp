@@ -1,0 +1,101 @@
+#include "astroid/core/atomic_file.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+
+#include <csignal>
+#include <filesystem>
+#include <string>
+
+#include "astroid/core/error.hpp"
+#include "astroid/test/temporary_folder.hpp"
+
+namespace astroid {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+// A process may write files of at most `bytes` while this lives: how a full disk looks from within.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : old_action_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &old_);
+    const rlimit limit{bytes, old_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &old_);
+    std::signal(SIGXFSZ, old_action_);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+
+ private:
+  rlimit old_{};
+  void (*old_action_)(int);
+};
+
+TEST(AtomicFile, AppearsOnlyWhenCommitted) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "product.txt";
+  AtomicFile file(path);
+  file.write(std::string(200000, 'x'));  // more than the buffer
+  EXPECT_FALSE(std::filesystem::exists(path));
+  file.commit();
+  EXPECT_EQ(std::filesystem::file_size(path), 200000U);
+  EXPECT_FALSE(std::filesystem::exists(partial_path(path)));
+}
+
+TEST(AtomicFile, LeavesNothingBehindWithoutCommit) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("product.txt", "old");
+  {
+    AtomicFile file(path);
+    file.write("new");
+  }
+  EXPECT_EQ(read_text_file(path), "old");
+  EXPECT_FALSE(std::filesystem::exists(partial_path(path)));
+}
+
+TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("product.txt", "old");
+  {
+    const FileSizeLimit limit(1000);
+    EXPECT_THAT([&] { write_text_file(path, std::string(5000, 'x')); },
+                ThrowsMessage<EnvironmentError>(HasSubstr("product.txt: File too large")));
+  }
+  EXPECT_EQ(read_text_file(path), "old");
+  EXPECT_FALSE(std::filesystem::exists(partial_path(path)));
+}
+
+TEST(AtomicFile, NamesPathAndCauseWhenTheFolderIsMissing) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT([&] { write_text_file(folder.path() / "no" / "product.txt", "x"); },
+              ThrowsMessage<EnvironmentError>(HasSubstr("no/product.txt: No such file or directory")));
+  EXPECT_THAT([&] { write_text_file(folder.path(), "x"); }, ThrowsMessage<EnvironmentError>(HasSubstr("directory")));
+}
+
+TEST(ReadTextFile, NamesTheLineOfANulByte) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.write("binary.csv", std::string("a,b\n1,\0002\n", 9));
+  EXPECT_THAT([&] { (void)read_text_file(path); },
+              ThrowsMessage<InputError>(HasSubstr("binary.csv:2: contains a NUL")));
+}
+
+TEST(ReadTextFile, NamesPathAndCause) {
+  const test::TemporaryFolder folder;
+  EXPECT_THAT([&] { (void)read_text_file(folder.path() / "absent"); },
+              ThrowsMessage<EnvironmentError>(HasSubstr("absent: No such file or directory")));
+  EXPECT_THAT([&] { (void)read_text_file(folder.path()); },
+              ThrowsMessage<EnvironmentError>(HasSubstr("Is a directory")));
+}
+
+TEST(PartialPath, IgnoresATrailingSlash) {
+  EXPECT_EQ(partial_path("results/"), "results.partial");
+}
+
+}  // namespace
+}  // namespace astroid
