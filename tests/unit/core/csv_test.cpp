@@ -102,7 +102,7 @@ TEST(CsvReader, GuessesTheSeparatorAndWhetherThereIsAHeader) {
   EXPECT_THAT(row(parse_csv("id \"the name\"\n1 \"x \"\"y\"\"\"\n", "t"), 0), ElementsAre("1", "x \"y\""));
   EXPECT_EQ(parse_csv("1 2\n", "t", {.header = CsvHeader::kPresent}).rows(), 0U);
   EXPECT_EQ(parse_csv("a b\n", "t", {.header = CsvHeader::kAbsent}).rows(), 1U);
-  EXPECT_EQ(parse_csv("1, 2\n", "t", {.separator = CsvSeparator::kBlanks}).field(0, 0), "1,");
+  EXPECT_EQ(parse_csv("1, 2\n", "t", {.separator = CsvSeparator::kBlanks}).header().at(0), "1,");
 }
 
 TEST(CsvReader, FindsColumnsWhateverTheirCase) {
@@ -152,7 +152,7 @@ TEST(CsvReader, ReadsARealEcsvCatalogue) {
   const auto path = test::shared_data("catalogues/refcat2_ey_uma.ecsv");
   if (!path) GTEST_SKIP() << "no shared data";
   const CsvTable table = read_csv(*path);
-  EXPECT_TRUE(table.column("ra"));
+  EXPECT_TRUE(table.column("RA_ICRS"));
   EXPECT_GT(table.rows(), 100U);
 }
 
