@@ -39,7 +39,7 @@ function(astroid_add_test label module)
   endif()
   add_executable(${target} ${ARG_SOURCES})
   target_link_libraries(${target} PRIVATE astroid::options astroid_test_support ${ARG_LIBRARIES} GTest::gmock_main)
-  if(NOT ASTROID_SANITIZER)
+  if(ASTROID_PCH)
     target_precompile_headers(${target} REUSE_FROM astroid_test_pch)
   endif()
   gtest_discover_tests(${target} TEST_PREFIX "${label}." DISCOVERY_TIMEOUT 60

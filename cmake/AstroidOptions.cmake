@@ -8,7 +8,7 @@ target_compile_options(astroid_options INTERFACE -Wall -Wextra -Wpedantic -Wconv
 if(ASTROID_WARNINGS_AS_ERRORS)
   target_compile_options(astroid_options INTERFACE -Werror)
 endif()
-if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+if(ASTROID_PCH AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")  # lets ccache see through precompiled headers
   target_compile_options(astroid_options INTERFACE -fpch-preprocess)
 endif()
 if(ASTROID_SANITIZER)

@@ -22,7 +22,8 @@ std::string summary(const std::vector<Problem>& problems) {
 std::string Problem::text() const {
   std::string out;
   if (!file.empty()) out += line > 0 ? fmt::format("{}:{}: ", file, line) : fmt::format("{}: ", file);
-  if (!parameter.empty()) out += value.empty() ? fmt::format("{}: ", parameter) : fmt::format("{} = {}: ", parameter, value);
+  if (!parameter.empty())
+    out += value.empty() ? fmt::format("{}: ", parameter) : fmt::format("{} = {}: ", parameter, value);
   out += message;
   if (!expected.empty()) out += fmt::format("; expected {}", expected);
   if (!suggestion.empty()) out += fmt::format("; {}", suggestion);

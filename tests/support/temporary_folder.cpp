@@ -19,7 +19,7 @@ TemporaryFolder::~TemporaryFolder() {
 }
 
 std::filesystem::path TemporaryFolder::write(const std::string& name, const std::string& text) const {
-  const std::filesystem::path file = path_ / name;
+  std::filesystem::path file = path_ / name;
   std::filesystem::create_directories(file.parent_path());
   std::ofstream(file, std::ios::binary) << text;
   return file;
@@ -27,13 +27,15 @@ std::filesystem::path TemporaryFolder::write(const std::string& name, const std:
 
 std::optional<std::filesystem::path> shared_data(const std::string& relative) {
   const char* override_folder = std::getenv("ASTROID_SHARED_DATA");
-  const std::filesystem::path folder =
-      override_folder != nullptr ? std::filesystem::path(override_folder) : source_dir().parent_path() / "shared" / "data";
-  const std::filesystem::path file = folder / relative;
+  const std::filesystem::path folder = override_folder != nullptr ? std::filesystem::path(override_folder)
+                                                                  : source_dir().parent_path() / "shared" / "data";
+  std::filesystem::path file = folder / relative;
   if (!std::filesystem::exists(file)) return std::nullopt;
   return file;
 }
 
-std::filesystem::path source_dir() { return ASTROID_SOURCE_DIR; }
+std::filesystem::path source_dir() {
+  return ASTROID_SOURCE_DIR;
+}
 
 }  // namespace astroid::test

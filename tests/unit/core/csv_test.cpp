@@ -16,7 +16,6 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 std::vector<std::string> row(const CsvTable& table, std::size_t index) {
   std::vector<std::string> fields;

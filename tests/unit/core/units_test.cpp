@@ -8,9 +8,13 @@ namespace astroid {
 namespace {
 
 template <class A, class B>
-concept Addable = requires(A a, B b) { a + b; };
+concept Addable = requires(A a, B b) {
+  a + b;
+};
 template <class A, class B>
-concept Multipliable = requires(A a, B b) { a * b; };
+concept Multipliable = requires(A a, B b) {
+  a* b;
+};
 
 TEST(Units, GainTurnsElectronsIntoAduAndBack) {
   const Gain gain(25.0);
@@ -18,7 +22,9 @@ TEST(Units, GainTurnsElectronsIntoAduAndBack) {
   EXPECT_DOUBLE_EQ((Adu(4.0) * gain).value(), 100.0);
 }
 
-TEST(Units, RateTimesTimeIsACount) { EXPECT_DOUBLE_EQ((ElectronsPerSecond(45.0) * Seconds(21.0)).value(), 945.0); }
+TEST(Units, RateTimesTimeIsACount) {
+  EXPECT_DOUBLE_EQ((ElectronsPerSecond(45.0) * Seconds(21.0)).value(), 945.0);
+}
 
 TEST(Units, MagnitudesAreAffine) {
   EXPECT_DOUBLE_EQ((Magnitude(12.0) - Magnitude(10.0)).value(), 2.0);

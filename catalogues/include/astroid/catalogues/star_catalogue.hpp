@@ -21,16 +21,16 @@ struct CatalogueStar {
   std::string id;
   SkyPosition sky;
   PixelPosition pixel;
-  Magnitude magnitude;       ///< in the catalogue's passband (kMagnitude)
-  double electrons = 0.0;    ///< per exposure (kElectrons)
-  double colour = 0.0;       ///< B-V, B_T-V_T or BP-RP, as `colour_index` of the catalogue says; NaN: unknown
-  double teff = 0.0;         ///< K; NaN: unknown
+  Magnitude magnitude;     ///< in the catalogue's passband (kMagnitude)
+  double electrons = 0.0;  ///< per exposure (kElectrons)
+  double colour = 0.0;     ///< B-V, B_T-V_T or BP-RP, as `colour_index` of the catalogue says; NaN: unknown
+  double teff = 0.0;       ///< K; NaN: unknown
 };
 
 struct StarCatalogue {
-  std::string source;              ///< file it came from
-  std::string passband;            ///< V, V_T, P, G, T, Kp, …
-  std::string colour_index;        ///< B-V, B_T-V_T, BP-RP or empty
+  std::string source;        ///< file it came from
+  std::string passband;      ///< V, V_T, P, G, T, Kp, …
+  std::string colour_index;  ///< B-V, B_T-V_T, BP-RP or empty
   PositionKind positions = PositionKind::kSky;
   BrightnessKind brightness = BrightnessKind::kMagnitude;
   std::vector<CatalogueStar> stars;  ///< ids are unique; order of the file

@@ -10,9 +10,9 @@ namespace astroid {
 
 enum class ExitCode : int {
   kSuccess = 0,
-  kInput = 2,         ///< the user's configuration, catalogue or image is wrong
-  kEnvironment = 3,   ///< disk, permissions, FITS I/O
-  kBug = 70,          ///< a broken invariant of ours
+  kInput = 2,        ///< the user's configuration, catalogue or image is wrong
+  kEnvironment = 3,  ///< disk, permissions, FITS I/O
+  kBug = 70,         ///< a broken invariant of ours
 };
 
 /// One thing that is wrong with the user's input. Fields that do not apply are empty (line: 0).
@@ -53,13 +53,13 @@ class BugError : public std::logic_error {
 };
 
 /// Throws BugError with the two values printed unless `a op b` holds; use for invariants, never for user input.
-#define ASTROID_CHECK_OP_(a, op, b)                                                                          \
-  do {                                                                                                       \
-    const auto check_a_ = (a);                                                                               \
-    const auto check_b_ = (b);                                                                               \
-    if (!(check_a_ op check_b_))                                                                             \
-      ::astroid::detail::check_failed(__FILE__, __LINE__, #a " " #op " " #b, static_cast<double>(check_a_),  \
-                                      static_cast<double>(check_b_));                                        \
+#define ASTROID_CHECK_OP_(a, op, b)                                                                         \
+  do {                                                                                                      \
+    const auto check_a_ = (a);                                                                              \
+    const auto check_b_ = (b);                                                                              \
+    if (!(check_a_ op check_b_))                                                                            \
+      ::astroid::detail::check_failed(__FILE__, __LINE__, #a " " #op " " #b, static_cast<double>(check_a_), \
+                                      static_cast<double>(check_b_));                                       \
   } while (false)
 #define ASTROID_CHECK_EQ(a, b) ASTROID_CHECK_OP_(a, ==, b)
 #define ASTROID_CHECK_LT(a, b) ASTROID_CHECK_OP_(a, <, b)

@@ -21,13 +21,13 @@ inline constexpr std::uint8_t kBad = 4;           ///< defective, masked or not 
 struct FrameHeader {
   int camera = 0;
   std::int64_t exposure = 0;
-  Seconds mid_time;            ///< of the exposure, since the start of the run
-  double mid_mjd = 0.0;        ///< the same, TDB
+  Seconds mid_time;      ///< of the exposure, since the start of the run
+  double mid_mjd = 0.0;  ///< the same, TDB
   Seconds exposure_time{1.0};
   Gain gain{1.0};
   Electrons readout_noise;
   Adu bias;
-  Adu saturation{65535.0};     ///< a pixel at or above it is saturated
+  Adu saturation{65535.0};  ///< a pixel at or above it is saturated
 };
 
 /// One exposure: pixel values in ADU over a layout, and what is wrong with which pixel.

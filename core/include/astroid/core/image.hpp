@@ -1,4 +1,5 @@
-// Images with a unit. Pixel coordinates everywhere: 0-based, the centre of the first pixel is (0, 0), x = column, y = row.
+// Images with a unit. Pixel coordinates everywhere: 0-based, the centre of the first pixel is (0, 0), x = column, y =
+// row.
 #pragma once
 
 #include <cstddef>
@@ -86,7 +87,9 @@ class Image {
   [[nodiscard]] int ny() const { return area_.ny; }
   [[nodiscard]] std::size_t size() const { return pixels_.size(); }
   [[nodiscard]] ImageView<T, Unit> view() { return {pixels_.data(), area_, static_cast<std::size_t>(area_.nx)}; }
-  [[nodiscard]] ImageView<const T, Unit> view() const { return {pixels_.data(), area_, static_cast<std::size_t>(area_.nx)}; }
+  [[nodiscard]] ImageView<const T, Unit> view() const {
+    return {pixels_.data(), area_, static_cast<std::size_t>(area_.nx)};
+  }
   [[nodiscard]] std::span<T> row(int y) { return view().row(y); }
   [[nodiscard]] std::span<const T> row(int y) const { return view().row(y); }
   [[nodiscard]] T& at(int x, int y) { return view().at(x, y); }
@@ -114,7 +117,8 @@ class PixelLayout {
   /// Index in the buffer of pixel (x, y) of region r, which must contain it.
   [[nodiscard]] std::size_t index(std::size_t region, int x, int y) const {
     const Rectangle& a = regions_[region];
-    return offsets_[region] + static_cast<std::size_t>(y - a.y0) * static_cast<std::size_t>(a.nx) + static_cast<std::size_t>(x - a.x0);
+    return offsets_[region] + static_cast<std::size_t>(y - a.y0) * static_cast<std::size_t>(a.nx) +
+           static_cast<std::size_t>(x - a.x0);
   }
 
  private:

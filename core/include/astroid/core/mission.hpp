@@ -24,27 +24,27 @@ struct SimulationSettings {
   std::int64_t exposures = 1;
   Seconds cycle{25.0};
   Seconds exposure_time{21.0};
-  std::string start;        ///< TDB, ISO 8601
-  double start_mjd = 0.0;   ///< the same as MJD (TDB), filled by the reader
+  std::string start;       ///< TDB, ISO 8601
+  double start_mjd = 0.0;  ///< the same as MJD (TDB), filled by the reader
 };
 
 struct JitterSettings {
   JitterModel model = JitterModel::kNone;
-  Arcseconds yaw, pitch, roll;   ///< rms
+  Arcseconds yaw, pitch, roll;  ///< rms
   Seconds timescale{250.0};
-  std::string file;              ///< columns time_s, yaw, pitch, roll (arcsec)
+  std::string file;  ///< columns time_s, yaw, pitch, roll (arcsec)
 };
 
 struct SatelliteSettings {
-  Degrees ra, dec, roll;         ///< of the optical axis
+  Degrees ra, dec, roll;  ///< of the optical axis
   JitterSettings jitter;
 };
 
 struct TelescopeSettings {
-  Magnitude zero_point{20.62};   ///< magnitude that gives one detected electron per second
+  Magnitude zero_point{20.62};  ///< magnitude that gives one detected electron per second
   std::string zero_point_passband = "P";
-  int cameras = 24;              ///< that observe the field
-  int simulated_cameras = 1;     ///< n <= cameras; independent terms are scaled to `cameras`
+  int cameras = 24;           ///< that observe the field
+  int simulated_cameras = 1;  ///< n <= cameras; independent terms are scaled to `cameras`
 };
 
 struct PsfSettings {
@@ -56,29 +56,29 @@ struct PsfSettings {
 };
 
 struct StellarFieldSettings {
-  std::string catalogue;         ///< path, resolved against the configuration file's folder
+  std::string catalogue;  ///< path, resolved against the configuration file's folder
   std::string catalogue_passband = "V";
-  std::string catalogue_unit = "deg";         ///< of ra and dec: deg or rad
-  double assumed_bv = 0.6;       ///< colour B-V in the catalogue's system where the catalogue has none
-  double assumed_teff = 5778.0;  ///< K, for V -> P where the catalogue has none
-  Magnitude faint_limit{99.0};   ///< stars fainter than this are left out
-  std::string background_catalogue;           ///< optional second file, e.g. made by `astroid field`
-  ElectronsPerSecond sky_background{0.0};     ///< per pixel, detected
+  std::string catalogue_unit = "deg";      ///< of ra and dec: deg or rad
+  double assumed_bv = 0.6;                 ///< colour B-V in the catalogue's system where the catalogue has none
+  double assumed_teff = 5778.0;            ///< K, for V -> P where the catalogue has none
+  Magnitude faint_limit{99.0};             ///< stars fainter than this are left out
+  std::string background_catalogue;        ///< optional second file, e.g. made by `astroid field`
+  ElectronsPerSecond sky_background{0.0};  ///< per pixel, detected
 };
 
 struct CcdSettings {
   int columns = 0, rows = 0;
   PixelScale pixel_scale{15.0};
-  std::string projection = "TAN";             ///< a zenithal projection of FITS WCS
-  double axis_x = 0.0, axis_y = 0.0;          ///< pixel where the optical axis falls; default the centre
+  std::string projection = "TAN";     ///< a zenithal projection of FITS WCS
+  double axis_x = 0.0, axis_y = 0.0;  ///< pixel where the optical axis falls; default the centre
   bool has_sub_field = false;
   int sub_x0 = 0, sub_y0 = 0, sub_columns = 0, sub_rows = 0;
-  int window = 0;                ///< side of the window around each target, px; 0: no windows
+  int window = 0;  ///< side of the window around each target, px; 0: no windows
   Electrons full_well{900000.0};
   bool blooming = true;
-  ElectronsPerSecond dark_current{0.0};       ///< per pixel
-  double dsnu = 0.0;             ///< rms relative to the dark current
-  double prnu = 0.0;             ///< rms relative
+  ElectronsPerSecond dark_current{0.0};  ///< per pixel
+  double dsnu = 0.0;                     ///< rms relative to the dark current
+  double prnu = 0.0;                     ///< rms relative
   Electrons readout_noise{0.0};
   Gain gain{1.0};
   Adu bias{0.0};
@@ -88,8 +88,8 @@ struct CcdSettings {
 struct PhotometrySettings {
   PhotometryMethod method = PhotometryMethod::kMask;
   Pixels aperture_radius{3.0};
-  int mask_window = 6;           ///< side of the window in which masks may grow, px
-  Pixels mask_reach{0.0};        ///< neighbours farther than this add nothing; 0: from the accuracy
+  int mask_window = 6;     ///< side of the window in which masks may grow, px
+  Pixels mask_reach{0.0};  ///< neighbours farther than this add nothing; 0: from the accuracy
   BackgroundMethod background = BackgroundMethod::kLocal;
   Pixels annulus_inner{5.0}, annulus_outer{8.0};
   int mesh = 64;
@@ -99,15 +99,15 @@ struct PhotometrySettings {
 };
 
 struct AnalysisSettings {
-  Seconds bin{3600.0};           ///< duration to which noise is averaged
-  double uncontaminated_spr = 1e-3;           ///< stars with less contamination judge magnitude recovery
+  Seconds bin{3600.0};               ///< duration to which noise is averaged
+  double uncontaminated_spr = 1e-3;  ///< stars with less contamination judge magnitude recovery
 };
 
 struct OutputSettings {
   ImageOutput images = ImageOutput::kFirst;
   int images_every = 1;
   LightCurveOutput light_curves = LightCurveOutput::kTargets;
-  std::vector<std::int64_t> dump_steps;       ///< exposures whose intermediate maps are written
+  std::vector<std::int64_t> dump_steps;  ///< exposures whose intermediate maps are written
 };
 
 struct Mission {

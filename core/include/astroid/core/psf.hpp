@@ -50,7 +50,7 @@ std::shared_ptr<const PixelPsf> make_gaussian_psf(double sigma);
 struct PsfTable {
   Image<double, unit::Relative> samples;  ///< any normalisation; must be finite and have a positive sum
   double samples_per_pixel = 1.0;
-  double centre_x = 0.0;                  ///< 0-based sample coordinates of the PSF's origin
+  double centre_x = 0.0;  ///< 0-based sample coordinates of the PSF's origin
   double centre_y = 0.0;
 };
 

@@ -28,9 +28,9 @@ class Quantity {
 };
 
 namespace unit {
-struct Electrons;           ///< photo-electrons
-struct ExpectedElectrons;   ///< mean number of electrons of a pixel, before shot noise; a plane's unit
-struct SampledElectrons;    ///< drawn number of electrons of a pixel, after shot noise; a plane's unit
+struct Electrons;          ///< photo-electrons
+struct ExpectedElectrons;  ///< mean number of electrons of a pixel, before shot noise; a plane's unit
+struct SampledElectrons;   ///< drawn number of electrons of a pixel, after shot noise; a plane's unit
 struct ElectronsPerSecond;
 struct Adu;
 struct ElectronsPerAdu;
@@ -42,8 +42,8 @@ struct Arcseconds;
 struct ArcsecondsPerPixel;
 struct DeltaMag;
 struct Ppm;
-struct Relative;            ///< dimensionless factor; a plane's unit
-struct Flags;               ///< bit mask; a plane's unit
+struct Relative;  ///< dimensionless factor; a plane's unit
+struct Flags;     ///< bit mask; a plane's unit
 }  // namespace unit
 
 using Electrons = Quantity<unit::Electrons>;
@@ -59,6 +59,8 @@ using PixelScale = Quantity<unit::ArcsecondsPerPixel>;
 using DeltaMag = Quantity<unit::DeltaMag>;
 using Ppm = Quantity<unit::Ppm>;
 
+// A table, one line a rule.
+// clang-format off
 constexpr Electrons operator*(ElectronsPerSecond rate, Seconds t) { return Electrons(rate.value() * t.value()); }
 constexpr Electrons operator*(Seconds t, ElectronsPerSecond rate) { return rate * t; }
 constexpr ElectronsPerSecond operator/(Electrons n, Seconds t) { return ElectronsPerSecond(n.value() / t.value()); }
@@ -75,6 +77,7 @@ constexpr Degrees to_degrees(Radians angle) { return Degrees(angle.value() * (18
 constexpr Arcseconds to_arcseconds(Degrees angle) { return Arcseconds(angle.value() * kArcsecondsPerDegree); }
 constexpr Degrees to_degrees(Arcseconds angle) { return Degrees(angle.value() / kArcsecondsPerDegree); }
 constexpr Radians to_radians(Arcseconds angle) { return to_radians(to_degrees(angle)); }
+// clang-format on
 
 /// An astronomical magnitude: affine, so mag - mag = DeltaMag, mag + DeltaMag = mag, and mag + mag does not compile.
 class Magnitude {

@@ -21,13 +21,13 @@ namespace astroid {
 
 /// What can be wrong with one measured flux; bits, each named in docs/flags.md and decoded in the report.
 namespace measurement_flag {
-inline constexpr std::uint32_t kEdge = 1U << 0;         ///< the aperture is cut by the edge of the frame or window
-inline constexpr std::uint32_t kSaturated = 1U << 1;    ///< a pixel of the aperture is at full well or clipped by the ADC
-inline constexpr std::uint32_t kBadPixel = 1U << 2;     ///< a pixel of the aperture is defective or not finite
-inline constexpr std::uint32_t kContaminated = 1U << 3; ///< neighbours give more than the configured share of the flux
-inline constexpr std::uint32_t kNoBackground = 1U << 4; ///< too few background pixels: the fallback was used
-inline constexpr std::uint32_t kOutside = 1U << 5;      ///< the star is not on the frame: flux is NaN
-inline constexpr std::uint32_t kNoFlux = 1U << 6;       ///< no pixel with light of the target: flux is NaN
+inline constexpr std::uint32_t kEdge = 1U << 0;       ///< the aperture is cut by the edge of the frame or window
+inline constexpr std::uint32_t kSaturated = 1U << 1;  ///< a pixel of the aperture is at full well or clipped by the ADC
+inline constexpr std::uint32_t kBadPixel = 1U << 2;   ///< a pixel of the aperture is defective or not finite
+inline constexpr std::uint32_t kContaminated = 1U << 3;  ///< neighbours give more than the configured share of the flux
+inline constexpr std::uint32_t kNoBackground = 1U << 4;  ///< too few background pixels: the fallback was used
+inline constexpr std::uint32_t kOutside = 1U << 5;       ///< the star is not on the frame: flux is NaN
+inline constexpr std::uint32_t kNoFlux = 1U << 6;        ///< no pixel with light of the target: flux is NaN
 }  // namespace measurement_flag
 
 /// A star as the ground believes it to be.
@@ -42,18 +42,18 @@ struct GroundModel {
   std::span<const FieldStar> stars;      ///< targets and every contaminant
   std::span<const std::size_t> targets;  ///< indices into `stars`, in the order of the results
   const PixelPsf* psf = nullptr;
-  PixelNoise noise;                      ///< background is the expected sky + dark, e- per pixel and exposure
+  PixelNoise noise;  ///< background is the expected sky + dark, e- per pixel and exposure
   Gain gain{1.0};
   Adu bias;
 };
 
 /// Expected electrons and variance (e-, e-²) of one estimator in one exposure, cause by cause.
 struct EstimatorBudget {
-  double target = 0.0;            ///< weighted electrons of the target
-  double contaminants = 0.0;      ///< weighted electrons of all other stars
-  double var_target = 0.0;        ///< photon noise of the target
+  double target = 0.0;        ///< weighted electrons of the target
+  double contaminants = 0.0;  ///< weighted electrons of all other stars
+  double var_target = 0.0;    ///< photon noise of the target
   double var_contaminants = 0.0;
-  double var_background = 0.0;    ///< photon noise of sky and dark under the aperture
+  double var_background = 0.0;  ///< photon noise of sky and dark under the aperture
   double var_readout = 0.0;
   double var_quantisation = 0.0;
   double var_background_estimate = 0.0;  ///< noise of the local background, 0 if it is known
@@ -79,14 +79,14 @@ struct StarEstimator {
   int mask_pixels = 0;               ///< pixels with weight > 0 in the aperture
   double enclosed_fraction = 0.0;    ///< weighted fraction of the target's flux, sum w p
   double spr_total = 0.0;            ///< F20: contaminants / all stars, sky excluded
-  double nsr_exposure = 0.0;         ///< sqrt(variance) / target, one exposure, one camera (F7 where background is known)
-  double gradient_x = 0.0;           ///< d ln F / dx of target and contaminants moving together, 1/px
+  double nsr_exposure = 0.0;  ///< sqrt(variance) / target, one exposure, one camera (F7 where background is known)
+  double gradient_x = 0.0;    ///< d ln F / dx of target and contaminants moving together, 1/px
   double gradient_y = 0.0;
-  double prnu_gradient_x = 0.0;      ///< sqrt(sum (w dI/dx)²) / sum w I of the target, 1/px (F27)
+  double prnu_gradient_x = 0.0;  ///< sqrt(sum (w dI/dx)²) / sum w I of the target, 1/px (F27)
   double prnu_gradient_y = 0.0;
-  double prnu_static = 0.0;          ///< sqrt(sum (w p)²) / sum w p (F28)
+  double prnu_static = 0.0;  ///< sqrt(sum (w p)²) / sum w p (F28)
   EstimatorBudget budget;
-  std::uint32_t flags = 0;           ///< measurement_flag bits that hold for every exposure
+  std::uint32_t flags = 0;  ///< measurement_flag bits that hold for every exposure
 };
 
 /// Builds the estimator of every target.

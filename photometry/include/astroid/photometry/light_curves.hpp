@@ -1,10 +1,9 @@
 // photometry/lightcurves.fits: one file for all stars, written in blocks of exposures as the run goes on.
 //
 // HDU TIME      table: TIME (BJD_TDB - 2457000, d, mid-exposure), CADENCENO
-// HDU STARS     table: ID, MAG, X, Y, REFERENCE (e- per exposure, double), NSR (sigma / REFERENCE of one exposure), FLAGS
-// HDU CAMERA1 … one image per camera: FLUX[star][exposure], float32 relative deviation from REFERENCE
-// HDU COMBINED  the mean of the cameras
-// HDU FLAGS     table: CAMERA, STAR, CADENCENO, FLAGS, only where a flag is set
+// HDU STARS     table: ID, MAG, X, Y, REFERENCE (e- per exposure, double), NSR (sigma / REFERENCE of one exposure),
+// FLAGS HDU CAMERA1 … one image per camera: FLUX[star][exposure], float32 relative deviation from REFERENCE HDU
+// COMBINED  the mean of the cameras HDU FLAGS     table: CAMERA, STAR, CADENCENO, FLAGS, only where a flag is set
 #pragma once
 
 #include <cstddef>
@@ -36,9 +35,9 @@ struct LightCurveFlag {
 struct LightCurveHeader {
   std::int64_t exposures = 0;
   int cameras = 1;
-  double start_mjd = 0.0;      ///< TDB, start of the first exposure
-  double cycle = 0.0;          ///< s
-  double exposure_time = 0.0;  ///< s
+  double start_mjd = 0.0;            ///< TDB, start of the first exposure
+  double cycle = 0.0;                ///< s
+  double exposure_time = 0.0;        ///< s
   std::vector<std::string> history;  ///< the plan, line by line
 };
 

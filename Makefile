@@ -1,0 +1,48 @@
+# The commands of the project; `make` alone lists them. The steps themselves are CMake presets (CMakePresets.json).
+.DEFAULT_GOAL := help
+.PHONY: help packages test-packages build assess test check bench format tidy asan tsan clean
+
+mission := plato
+astroid := build/release/apps/astroid
+
+help: ## list these commands
+	@sed -n 's/^\([a-z][a-z-]*\):[^#]*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
+
+packages: ## install the Debian packages that building and running need
+	@cmake/install-packages.sh cmake/packages.txt
+
+test-packages: ## install those of the test suite as well
+	@cmake/install-packages.sh cmake/packages.txt cmake/packages-test.txt
+
+build: packages ## build the program as a user runs it: build/release/apps/astroid
+	cmake --preset release
+	cmake --build --preset release
+
+assess: build ## set everything up and assess a mission on a real field (mission=plato); the report goes to out/
+	$(astroid) assess apps/missions/$(mission).xml -o out/$(mission) --overwrite
+
+test: test-packages ## everything that continuous integration checks: format, warnings, clang-tidy, all tests
+	cmake --workflow --preset ci
+
+check: test-packages ## the same steps on the developer's build, before a commit
+	cmake --workflow --preset check
+
+bench: test-packages ## build and run the benchmarks
+	cmake --preset bench
+	cmake --build --preset bench
+	cmake --build --preset bench --target run-benchmarks
+
+format: ## format every source file
+	cmake/format.sh --fix
+
+tidy: test-packages ## clang-tidy over the tree
+	cmake/tidy.py
+
+asan: test-packages ## the tests under the address and undefined-behaviour sanitizers
+	cmake --preset asan && cmake --build --preset asan && ctest --preset asan
+
+tsan: test-packages ## the tests under the thread sanitizer
+	cmake --preset tsan && cmake --build --preset tsan && ctest --preset tsan
+
+clean: ## remove everything that was built (results in out/ stay)
+	rm -rf build

@@ -1,0 +1,109 @@
+#!/usr/bin/env python3
+"""Runs clang-tidy over every source of the project, two at a time, and prints only what it finds.
+
+A file that was clean is not looked at again until it, a project header it includes, its flags or the checks change:
+the stamps lie in ~/.cache/astroid-tidy and hold for every checkout on the machine. `--all` ignores them.
+usage: cmake/tidy.py [--all] [--jobs N] [PART_OF_A_PATH...]
+"""
+
+import argparse
+import concurrent.futures
+import hashlib
+import json
+import os
+import pathlib
+import shlex
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build" / "tidy"
+TIDY = "clang-tidy-14"
+STAMPS = pathlib.Path(os.environ.get("XDG_CACHE_HOME", pathlib.Path.home() / ".cache")) / "astroid-tidy"
+
+
+def configure():
+    """Writes build/tidy/compile_commands.json: no ccache, no precompiled headers, which clang cannot read from g++."""
+    done = subprocess.run(["cmake", "--preset", "tidy"], cwd=ROOT, capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(done.stdout + done.stderr)
+    return json.loads((BUILD / "compile_commands.json").read_text())
+
+
+def project_entries(commands, parts):
+    """The commands of the project's own sources; the stubs that CMake generates to verify headers lie in build/."""
+    for entry in commands:
+        path = pathlib.Path(entry["file"])
+        if path.is_relative_to(ROOT) and not path.is_relative_to(ROOT / "build"):
+            relative = str(path.relative_to(ROOT))
+            if not parts or any(part in relative for part in parts):
+                yield entry
+
+
+def headers_of(entry):
+    """The project's files that a source includes, itself among them."""
+    arguments = shlex.split(entry["command"])
+    out = arguments.index("-o")
+    arguments = arguments[:out] + arguments[out + 2:] + ["-MM", "-MT", "x"]
+    listing = subprocess.run(arguments, cwd=entry["directory"], capture_output=True, text=True, check=True).stdout
+    paths = {pathlib.Path(entry["directory"], word).resolve() for word in listing.replace("\\\n", " ").split()[1:]}
+    return sorted(path for path in paths if path.is_relative_to(ROOT))
+
+
+def stamp_of(entry, common):
+    digest = hashlib.sha256(common)
+    digest.update(entry["command"].replace(str(ROOT), "").encode())
+    for path in headers_of(entry):
+        digest.update(str(path.relative_to(ROOT)).encode() + b"\0" + path.read_bytes())
+    return STAMPS / digest.hexdigest()
+
+
+def check(entry, common, ignore_stamps):
+    """Returns what clang-tidy says of one source, '' when it has nothing to say."""
+    try:
+        stamp = stamp_of(entry, common)
+    except subprocess.CalledProcessError as failure:
+        return f"{entry['file']}: does not compile\n{failure.stderr}"
+    if stamp.exists() and not ignore_stamps:
+        stamp.touch()
+        return ""
+    done = subprocess.run([TIDY, "-p", str(BUILD), "--quiet", entry["file"]], cwd=ROOT, capture_output=True, text=True)
+    if done.returncode != 0 or done.stdout.strip():
+        return done.stdout + (done.stderr if not done.stdout.strip() else "")
+    stamp.touch()
+    return ""
+
+
+def forget_old_stamps(days=30):
+    for stamp in STAMPS.iterdir():
+        if stamp.stat().st_mtime < time.time() - days * 86400:
+            stamp.unlink(missing_ok=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--all", action="store_true", help="look at clean files again")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("parts", nargs="*", help="only files whose path contains one of these")
+    options = parser.parse_args()
+
+    version = subprocess.run([TIDY, "--version"], capture_output=True, text=True, check=True).stdout
+    common = (ROOT / ".clang-tidy").read_bytes() + version.encode()
+    STAMPS.mkdir(parents=True, exist_ok=True)
+    forget_old_stamps()
+    entries = list(project_entries(configure(), options.parts))
+    if not entries:
+        sys.exit("clang-tidy: no source to look at")
+    bad = 0
+    with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
+        for findings in pool.map(lambda entry: check(entry, common, options.all), entries):
+            if findings:
+                bad += 1
+                print(findings, flush=True)
+    print(f"clang-tidy: {len(entries)} sources, {bad} with findings")
+    return 1 if bad else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
