@@ -1,0 +1,116 @@
+#include "astroid/analysis/nsr_accumulator.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "astroid/core/error.hpp"
+
+namespace astroid {
+
+SeriesStatistics::SeriesStatistics(std::size_t stars, std::int64_t exposures_per_bin)
+    : per_bin_(exposures_per_bin), stars_(stars) {
+  ASTROID_CHECK_LE(2, exposures_per_bin);
+  c4_.assign(static_cast<std::size_t>(per_bin_) + 1, 0.0);
+  for (std::int64_t n = 2; n <= per_bin_; ++n) c4_[static_cast<std::size_t>(n)] = c4(n);
+}
+
+void SeriesStatistics::close(Star& star) const {
+  const std::int64_t n = star.open_n;
+  star.open_n = 0;
+  if (n == 0) return;
+  const double count = static_cast<double>(n);
+  const double mean = star.shift + star.sum / count;
+  const double m2 = std::max(0.0, star.sum_squares - star.sum * star.sum / count);
+
+  const double total = static_cast<double>(star.n + n);
+  const double delta = mean - star.mean;
+  star.m2 += m2 + delta * delta * (static_cast<double>(star.n) * count / total);
+  star.mean += delta * (count / total);
+  star.n += n;
+
+  // A bin with fewer than half its exposures is not a measurement of the bin.
+  if (2 * n < per_bin_ || n < 2) return;
+  ++star.bins;
+  star.within_dof += n - 1;
+  star.deviation_sum += std::sqrt(m2 / static_cast<double>(n - 1)) / c4_[static_cast<std::size_t>(n)];
+  const double weight = star.weight + count;
+  const double step = mean - star.bin_mean;
+  star.bin_m2 += step * step * (star.weight * count / weight);
+  star.bin_mean += step * (count / weight);
+  star.weight = weight;
+}
+
+void SeriesStatistics::add(std::size_t star_index, std::int64_t first, std::span<const float> deviation) {
+  Star& star = stars_[star_index];
+  ASTROID_CHECK_LE(star.next, first);
+  star.next = first + static_cast<std::int64_t>(deviation.size());
+  std::size_t i = 0;
+  while (i < deviation.size()) {
+    const std::int64_t exposure = first + static_cast<std::int64_t>(i);
+    const std::int64_t bin = exposure / per_bin_;
+    if (bin != star.open_bin) {
+      close(star);
+      star.open_bin = bin;
+      star.sum = 0.0;
+      star.sum_squares = 0.0;
+    }
+    const std::size_t left = static_cast<std::size_t>((bin + 1) * per_bin_ - exposure);
+    const std::size_t end = std::min(deviation.size(), i + left);
+    double sum = star.sum;
+    double squares = star.sum_squares;
+    std::int64_t n = star.open_n;
+    for (; i < end; ++i) {
+      const double d = static_cast<double>(deviation[i]);
+      if (std::isnan(d)) {
+        ++star.missing;
+        continue;
+      }
+      if (n == 0) star.shift = d;
+      const double e = d - star.shift;
+      sum += e;
+      squares += e * e;
+      ++n;
+    }
+    star.sum = sum;
+    star.sum_squares = squares;
+    star.open_n = n;
+  }
+}
+
+SeriesSummary SeriesStatistics::summary(std::size_t star_index) const {
+  Star star = stars_[star_index];
+  close(star);
+  SeriesSummary out;
+  out.exposures = star.n;
+  out.missing = star.missing;
+  out.bins = star.bins;
+  out.mean = star.n > 0 ? star.mean : std::nan("");
+  // Relative to a mean flux that is not positive, noise has no meaning.
+  const double mean_flux = 1.0 + star.mean;
+  const double relative = mean_flux > 0.0 ? 1.0 / mean_flux : std::nan("");
+  if (star.n >= 2) {
+    out.exposure = noise_estimate(std::sqrt(star.m2 / static_cast<double>(star.n - 1)), star.n - 1).scaled(relative);
+  }
+  const double per_bin = static_cast<double>(per_bin_);
+  if (star.bins >= 1) {
+    const double sigma = star.deviation_sum / static_cast<double>(star.bins);
+    NoiseEstimate within = noise_estimate(sigma, star.within_dof);
+    within.value = sigma;  // each bin has been corrected by its own c4
+    out.bin_within = within.scaled(relative / std::sqrt(per_bin));
+  }
+  if (star.bins >= 2) {
+    // The mean square between bins, sum m (x - mean)^2 / (bins - 1), estimates the variance of one exposure.
+    const double sigma = std::sqrt(star.bin_m2 / static_cast<double>(star.bins - 1));
+    out.bin_means = noise_estimate(sigma, star.bins - 1).scaled(relative / std::sqrt(per_bin));
+  }
+  return out;
+}
+
+std::vector<SeriesSummary> SeriesStatistics::summaries() const {
+  std::vector<SeriesSummary> out;
+  out.reserve(stars_.size());
+  for (std::size_t star = 0; star < stars_.size(); ++star) out.push_back(summary(star));
+  return out;
+}
+
+}  // namespace astroid
