@@ -15,7 +15,7 @@ namespace {
 constexpr double kLowerTail = 0.025;                   // of a 95 % interval
 constexpr double kNormalQuantile = 1.959963984540054;  // of 1 - kLowerTail
 // From here Wilson and Hilferty's cube is good to 1e-6 and never iterates (WilsonHilferty1931).
-constexpr std::int64_t kManyDegrees = 400;
+constexpr std::int64_t kManyDegrees = 1000;
 
 double wilson_hilferty(double z, double dof) {
   const double a = 2.0 / (9.0 * dof);  // Eq. of the cube-root transform

@@ -27,13 +27,13 @@ TEST(Confidence, GivesTheIntervalOfChiSquared) {
 }
 
 TEST(Confidence, HasNoStepWhereTheApproximationOfTheIntervalBegins) {
-  // One more degree moves the ends by 8e-5, and the next by 0.4 % less.
-  const DeviationInterval d398 = deviation_interval(398);
-  const DeviationInterval d399 = deviation_interval(399);
-  const DeviationInterval d400 = deviation_interval(400);
-  EXPECT_NEAR(d400.low - d399.low, d399.low - d398.low, 1e-6);
-  EXPECT_NEAR(d400.high - d399.high, d399.high - d398.high, 1e-6);
-  EXPECT_NEAR(d400.median - d399.median, d399.median - d398.median, 1e-6);
+  // One more degree moves the ends by 2e-5, and the next by 0.15 % less.
+  const DeviationInterval d998 = deviation_interval(998);
+  const DeviationInterval d999 = deviation_interval(999);
+  const DeviationInterval d1000 = deviation_interval(1000);
+  EXPECT_NEAR(d1000.low - d999.low, d999.low - d998.low, 1e-6);
+  EXPECT_NEAR(d1000.high - d999.high, d999.high - d998.high, 1e-6);
+  EXPECT_NEAR(d1000.median - d999.median, d999.median - d998.median, 1e-6);
 }
 
 TEST(Confidence, GivesNothingWithoutDegreesOfFreedom) {
