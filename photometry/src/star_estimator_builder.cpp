@@ -1,0 +1,344 @@
+#include "star_estimator_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "astroid/photometry/aperture.hpp"
+
+namespace astroid {
+
+Rectangle mask_window(PixelPosition star, int size) {
+  if (!std::isfinite(star.x) || !std::isfinite(star.y) || size <= 0) return {};
+  // An even window has no central pixel: floor() makes 6 pixels begin two before the star's own (SCIENCE §3.2).
+  const double half = size % 2 == 0 ? 0.0 : 0.5;
+  const int before = (size - 1) / 2;
+  return {static_cast<int>(std::floor(star.x + half)) - before, static_cast<int>(std::floor(star.y + half)) - before,
+          size, size};
+}
+
+namespace detail {
+
+namespace {
+
+// Central difference for d ln F/dx: its own error is h²/6 F''' ~ 1e-6 of the gradient, rounding adds 1e-13.
+constexpr double kGradientStep = 1e-3;  // px
+
+PixelPosition nearest_pixel(PixelPosition p) {
+  return {std::floor(p.x + 0.5), std::floor(p.y + 0.5)};
+}
+
+Rectangle bounding_box(const Rectangle& region, const PixelLayout& layout, const StarEstimator& estimator) {
+  int x0 = std::numeric_limits<int>::max();
+  int y0 = x0;
+  int x1 = std::numeric_limits<int>::min();
+  int y1 = x1;
+  const auto width = static_cast<std::size_t>(region.nx);
+  for (std::size_t i = 0; i < estimator.aperture_terms; ++i) {
+    const std::size_t k = estimator.terms[i].pixel - layout.offset(estimator.region);
+    const int x = region.x0 + static_cast<int>(k % width);
+    const int y = region.y0 + static_cast<int>(k / width);
+    x0 = std::min(x0, x);
+    x1 = std::max(x1, x + 1);
+    y0 = std::min(y0, y);
+    y1 = std::max(y1, y + 1);
+  }
+  return {x0, y0, x1 - x0, y1 - y0};
+}
+
+}  // namespace
+
+std::vector<Rectangle> aperture_windows(const GroundModel& model, const PhotometrySettings& settings) {
+  std::vector<Rectangle> windows;
+  windows.reserve(model.targets.size());
+  for (const std::size_t target : model.targets) {
+    const FieldStar& star = model.stars[target];
+    const bool aperture = settings.method == PhotometryMethod::kAperture;
+    windows.push_back(!shines(star) ? Rectangle{}
+                      : aperture    ? aperture_box(star.position, settings.aperture_radius.value())
+                                    : mask_window(star.position, settings.mask_window));
+  }
+  return windows;
+}
+
+StarEstimatorBuilder::StarEstimatorBuilder(const PixelLayout& layout, const GroundModel& model,
+                                           const PhotometrySettings& settings)
+    : layout_(layout),
+      model_(model),
+      settings_(settings),
+      stamps_(star_stamps(model, settings)),
+      regions_(layout.regions()) {
+  if (settings.background == BackgroundMethod::kLocal) light_ = expected_light(layout, model, stamps_);
+}
+
+StarEstimator StarEstimatorBuilder::build(std::size_t star, const Rectangle& window,
+                                          std::span<const std::size_t> neighbours) {
+  const FieldStar& target = model_.stars[star];
+  StarEstimator estimator;
+  estimator.star = star;
+  estimator.window = window;
+  estimator.nsr_exposure = std::numeric_limits<double>::infinity();
+  if (!choose_region(target, window, estimator)) {
+    estimator.flags |= measurement_flag::kOutside;
+    return estimator;
+  }
+  if (window.empty()) {
+    estimator.flags |= measurement_flag::kNoFlux;
+    return estimator;
+  }
+  expected_in_window(star, window, neighbours);
+  if (!choose_weights(target, window)) {
+    estimator.flags |= measurement_flag::kNoFlux;
+    return estimator;
+  }
+  cut_at_edges(target, window, estimator);
+  fill_budget(window, estimator);
+  if (!(estimator.budget.target > 0.0)) {
+    estimator.terms.clear();
+    estimator.aperture_terms = 0;
+    estimator.flags |= measurement_flag::kNoFlux;
+    return estimator;
+  }
+  add_background(target, estimator);
+  estimator.nsr_exposure = std::sqrt(estimator.budget.variance()) / estimator.budget.target;
+  fill_gradients(star, neighbours, estimator);
+  return estimator;
+}
+
+bool StarEstimatorBuilder::choose_region(const FieldStar& star, const Rectangle& window, StarEstimator& estimator) {
+  const PixelPosition centre = nearest_pixel(star.position);
+  constexpr double kFarthestPixel = 1e8;
+  if (!(std::abs(centre.x) < kFarthestPixel && std::abs(centre.y) < kFarthestPixel)) return false;
+  const Rectangle pixel{static_cast<int>(centre.x), static_cast<int>(centre.y), 1, 1};
+  const Rectangle annulus = aperture_box(star.position, settings_.annulus_outer.value());
+  regions_.find(pixel, found_);
+  std::size_t most_aperture = 0;
+  std::size_t most_annulus = 0;
+  bool chosen = false;
+  for (const std::size_t region : found_) {
+    const std::size_t in_aperture = intersect(window, layout_.regions()[region]).size();
+    const std::size_t in_annulus = intersect(annulus, layout_.regions()[region]).size();
+    const bool better = in_aperture > most_aperture || (in_aperture == most_aperture && in_annulus > most_annulus);
+    if (chosen && !better) continue;
+    estimator.region = region;
+    most_aperture = in_aperture;
+    most_annulus = in_annulus;
+    chosen = true;
+  }
+  return chosen;
+}
+
+void StarEstimatorBuilder::expected_in_window(std::size_t star, const Rectangle& window,
+                                              std::span<const std::size_t> neighbours) {
+  const std::size_t pixels = window.size();
+  target_.assign(pixels, 0.0);
+  contaminants_.assign(pixels, 0.0);
+  total_.resize(pixels);
+  // The target's own light isn't cut at its stamp: near the edge of the window every pixel still counts.
+  add_star(*model_.psf, model_.stars[star], window, window, target_, scratch_);
+  for (const std::size_t neighbour : neighbours)
+    if (neighbour != star)
+      add_star(*model_.psf, model_.stars[neighbour], stamps_[neighbour], window, contaminants_, scratch_);
+  for (std::size_t i = 0; i < pixels; ++i) total_[i] = target_[i] + contaminants_[i];
+}
+
+bool StarEstimatorBuilder::choose_weights(const FieldStar& star, const Rectangle& window) {
+  weights_.assign(window.size(), 0.0);
+  switch (settings_.method) {
+    case PhotometryMethod::kAperture:
+      aperture_overlap(star.position, settings_.aperture_radius.value(), window, weights_);
+      return true;
+    case PhotometryMethod::kMask: {
+      const std::vector<std::size_t> mask = optimal_binary_mask(target_, total_, model_.noise);
+      for (const std::size_t pixel : mask) weights_[pixel] = 1.0;
+      return !mask.empty();
+    }
+    case PhotometryMethod::kWeighted: {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < weights_.size(); ++i) {
+        const double variance = total_[i] + model_.noise.variance();
+        weights_[i] = target_[i] > 0.0 ? target_[i] / variance : 0.0;
+        sum += weights_[i];
+      }
+      return sum > 0.0;
+    }
+  }
+  throw BugError("unknown photometry method");
+}
+
+void StarEstimatorBuilder::cut_at_edges(const FieldStar& star, const Rectangle& window, StarEstimator& estimator) {
+  const Rectangle& region = layout_.regions()[estimator.region];
+  const auto width = static_cast<std::size_t>(window.nx);
+  const Rectangle inside = intersect(window, region);
+  bool cut = false;
+  if (!(inside == window)) {
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      const int x = window.x0 + static_cast<int>(i % width);
+      const int y = window.y0 + static_cast<int>(i / width);
+      if (inside.contains(x, y)) continue;
+      cut = cut || weights_[i] > 0.0;
+      target_[i] = 0.0;
+      contaminants_[i] = 0.0;
+      total_[i] = 0.0;
+      weights_[i] = 0.0;
+    }
+  }
+  if (cut) {
+    estimator.flags |= measurement_flag::kEdge;
+    // What is best without the lost pixels is another mask; pixels without target light stay out of it.
+    if (settings_.method == PhotometryMethod::kMask) choose_weights(star, window);
+  }
+  if (settings_.method == PhotometryMethod::kWeighted) {
+    double enclosed = 0.0;
+    for (std::size_t i = 0; i < weights_.size(); ++i) enclosed += weights_[i] * target_[i];
+    for (double& weight : weights_) weight = enclosed > 0.0 ? weight * star.electrons / enclosed : 0.0;
+  }
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    // What is applied is a float: everything predicted below is of this weight.
+    const auto weight = static_cast<float>(weights_[i]);
+    weights_[i] = static_cast<double>(weight);
+    if (!(weight > 0.0F)) continue;
+    const int x = window.x0 + static_cast<int>(i % width);
+    const int y = window.y0 + static_cast<int>(i / width);
+    estimator.terms.push_back({static_cast<std::uint32_t>(layout_.index(estimator.region, x, y)), weight});
+  }
+  estimator.aperture_terms = estimator.terms.size();
+  estimator.mask_pixels = static_cast<int>(estimator.terms.size());
+}
+
+void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& estimator) {
+  const PixelNoise& noise = model_.noise;
+  const double electrons = model_.stars[estimator.star].electrons;
+  EstimatorBudget& budget = estimator.budget;
+  double squares = 0.0;
+  double static_prnu = 0.0;
+  for (std::size_t i = 0; i < window.size(); ++i) {
+    const double w = weights_[i];
+    const double square = w * w;
+    budget.target += w * target_[i];
+    budget.contaminants += w * contaminants_[i];
+    budget.var_target += square * target_[i];
+    budget.var_contaminants += square * contaminants_[i];
+    squares += square;
+    static_prnu += (w * target_[i]) * (w * target_[i]);
+  }
+  budget.var_background = squares * noise.background;
+  budget.var_readout = squares * noise.readout * noise.readout;
+  budget.var_quantisation = squares * noise.quantisation * noise.quantisation;
+  if (!(budget.target > 0.0)) return;
+  estimator.enclosed_fraction = budget.target / electrons;
+  estimator.spr_total = budget.contaminants / (budget.target + budget.contaminants);
+  estimator.prnu_static = std::sqrt(static_prnu) / budget.target;
+  if (estimator.spr_total > model_.contamination_limit) estimator.flags |= measurement_flag::kContaminated;
+}
+
+void StarEstimatorBuilder::add_background(const FieldStar& star, StarEstimator& estimator) {
+  double weight_sum = 0.0;
+  for (const EstimatorTerm& term : estimator.terms) weight_sum += static_cast<double>(term.weight);
+  estimator.known_background = model_.noise.background * weight_sum;
+  switch (settings_.background) {
+    case BackgroundMethod::kMesh:
+      estimator.known_background = 0.0;
+      return;
+    case BackgroundMethod::kKnown:
+      estimator.offset = estimator.known_background;
+      return;
+    case BackgroundMethod::kLocal:
+      if (add_local_background(star, estimator)) return;
+      estimator.offset = estimator.known_background;
+      estimator.flags |= measurement_flag::kNoBackground;
+      return;
+  }
+}
+
+bool StarEstimatorBuilder::add_local_background(const FieldStar& star, StarEstimator& estimator) {
+  const double inner = settings_.annulus_inner.value();
+  const double outer = settings_.annulus_outer.value();
+  const double noise_variance = model_.noise.variance();
+  const Rectangle& region = layout_.regions()[estimator.region];
+  const Rectangle box = intersect(aperture_box(star.position, outer), region);
+  found_.clear();
+  double star_light = 0.0;
+  for (int y = box.y0; y < box.y1(); ++y) {
+    for (int x = box.x0; x < box.x1(); ++x) {
+      const double dx = x - star.position.x;
+      const double dy = y - star.position.y;
+      const double square = dx * dx + dy * dy;
+      if (square < inner * inner || square > outer * outer) continue;
+      const std::size_t pixel = layout_.index(estimator.region, x, y);
+      const double light = light_.pixels()[pixel];
+      // Little light: below one sigma of the pixel's own noise, so that wrong beliefs on the neighbours hardly matter.
+      if (light * light > noise_variance) continue;
+      found_.push_back(pixel);
+      star_light += light;
+    }
+  }
+  const auto in_aperture = [&estimator](std::size_t pixel) {
+    return std::any_of(estimator.terms.begin(), estimator.terms.end(),
+                       [pixel](const EstimatorTerm& term) { return term.pixel == pixel; });
+  };
+  // Only an aperture that reaches into its own annulus shares pixels with it.
+  if (settings_.method == PhotometryMethod::kAperture ? settings_.aperture_radius.value() + 1.0 > inner
+                                                      : settings_.mask_window > inner) {
+    for (std::size_t k = found_.size(); k-- > 0;) {
+      if (!in_aperture(found_[k])) continue;
+      star_light -= light_.pixels()[found_[k]];
+      found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(k));
+    }
+  }
+  if (found_.size() < kFewestBackgroundPixels) return false;
+  const auto count = static_cast<double>(found_.size());
+  double weight_sum = 0.0;
+  for (const EstimatorTerm& term : estimator.terms) weight_sum += static_cast<double>(term.weight);
+  const auto weight = static_cast<float>(-weight_sum / count);
+  for (const std::size_t pixel : found_) estimator.terms.push_back({static_cast<std::uint32_t>(pixel), weight});
+  estimator.offset = -weight_sum * star_light / count;
+  estimator.budget.var_background_estimate =
+      (weight_sum / count) * (weight_sum / count) * (count * noise_variance + star_light);
+  return true;
+}
+
+void StarEstimatorBuilder::fill_gradients(std::size_t star, std::span<const std::size_t> neighbours,
+                                          StarEstimator& estimator) {
+  const Rectangle& region = layout_.regions()[estimator.region];
+  const Rectangle box = bounding_box(region, layout_, estimator);
+  const auto width = static_cast<std::size_t>(box.nx);
+  // target_ and contaminants_ become d/dx of the light; weights_ the weights over the smaller box.
+  weights_.assign(box.size(), 0.0);
+  for (std::size_t i = 0; i < estimator.aperture_terms; ++i) {
+    const std::size_t k = estimator.terms[i].pixel - layout_.offset(estimator.region);
+    const int x = region.x0 + static_cast<int>(k % static_cast<std::size_t>(region.nx));
+    const int y = region.y0 + static_cast<int>(k / static_cast<std::size_t>(region.nx));
+    weights_[static_cast<std::size_t>(y - box.y0) * width + static_cast<std::size_t>(x - box.x0)] =
+        static_cast<double>(estimator.terms[i].weight);
+  }
+  for (const bool along_x : {true, false}) {
+    target_.assign(box.size(), 0.0);
+    contaminants_.assign(box.size(), 0.0);
+    for (const double sign : {1.0, -1.0}) {
+      const auto add_moved = [&](std::size_t index, const Rectangle& stamp, std::span<double> light) {
+        FieldStar moved;
+        moved.position = model_.stars[index].position;
+        (along_x ? moved.position.x : moved.position.y) += sign * kGradientStep;
+        moved.electrons = sign * model_.stars[index].electrons;
+        add_star(*model_.psf, moved, stamp, box, light, scratch_);
+      };
+      add_moved(star, box, target_);
+      for (const std::size_t neighbour : neighbours)
+        if (neighbour != star) add_moved(neighbour, stamps_[neighbour], contaminants_);
+    }
+    double change = 0.0;
+    double prnu = 0.0;
+    for (std::size_t i = 0; i < weights_.size(); ++i) {
+      change += weights_[i] * (target_[i] + contaminants_[i]);
+      prnu += (weights_[i] * target_[i]) * (weights_[i] * target_[i]);
+    }
+    const double flux = estimator.budget.target + estimator.budget.contaminants;
+    (along_x ? estimator.gradient_x : estimator.gradient_y) = change / (2.0 * kGradientStep * flux);
+    (along_x ? estimator.prnu_gradient_x : estimator.prnu_gradient_y) =
+        std::sqrt(prnu) / (2.0 * kGradientStep * estimator.budget.target);
+  }
+}
+
+}  // namespace detail
+}  // namespace astroid

@@ -1,0 +1,46 @@
+#include "astroid/test/python.hpp"
+
+#include <array>
+#include <cstdio>
+#include <stdexcept>
+
+namespace astroid::test {
+
+namespace {
+
+// Debian's own interpreter: one of the user's first in PATH rarely has Debian's modules.
+constexpr const char* kPython = "/usr/bin/python3";
+
+std::string shell_word(const std::string& text) {
+  std::string out = "'";
+  for (const char c : text) out += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return out + "'";
+}
+
+int run(const std::string& command, std::string& output) {
+  FILE* pipe = popen(command.c_str(), "r");
+  if (pipe == nullptr) return -1;
+  std::array<char, 4096> buffer{};
+  std::size_t n = 0;
+  while ((n = std::fread(buffer.data(), 1, buffer.size(), pipe)) > 0) output.append(buffer.data(), n);
+  return pclose(pipe);
+}
+
+}  // namespace
+
+bool python_has(const std::vector<std::string>& modules) {
+  std::string code;
+  for (const std::string& module : modules) code += "import " + module + "\n";
+  std::string output;
+  return run(std::string(kPython) + " -c " + shell_word(code) + " 2>/dev/null", output) == 0;
+}
+
+std::string run_python(const std::filesystem::path& script, const std::vector<std::string>& arguments) {
+  std::string command = std::string(kPython) + " " + shell_word(script.string());
+  for (const std::string& argument : arguments) command += " " + shell_word(argument);
+  std::string output;
+  if (run(command + " 2>&1", output) != 0) throw std::runtime_error(script.string() + " failed:\n" + output);
+  return output;
+}
+
+}  // namespace astroid::test
