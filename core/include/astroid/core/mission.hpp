@@ -24,20 +24,26 @@ struct SimulationSettings {
   std::int64_t exposures = 1;
   Seconds cycle{25.0};
   Seconds exposure_time{21.0};
-  std::string start;       ///< TDB, ISO 8601
-  double start_mjd = 0.0;  ///< the same as MJD (TDB), filled by the reader
+  std::string start = "2027-01-01T00:00:00";  ///< TDB, ISO 8601
+  double start_mjd = 61406.0;                 ///< the same as MJD (TDB), filled by the reader
+
+  friend bool operator==(const SimulationSettings&, const SimulationSettings&) = default;
 };
 
 struct JitterSettings {
   JitterModel model = JitterModel::kNone;
   Arcseconds yaw, pitch, roll;  ///< rms
   Seconds timescale{250.0};
-  std::string file;  ///< columns time_s, yaw, pitch, roll (arcsec)
+  std::string file;  ///< absolute path; columns time_s, yaw, pitch, roll (arcsec)
+
+  friend bool operator==(const JitterSettings&, const JitterSettings&) = default;
 };
 
 struct SatelliteSettings {
   Degrees ra, dec, roll;  ///< of the optical axis
   JitterSettings jitter;
+
+  friend bool operator==(const SatelliteSettings&, const SatelliteSettings&) = default;
 };
 
 struct TelescopeSettings {
@@ -45,25 +51,31 @@ struct TelescopeSettings {
   std::string zero_point_passband = "P";
   int cameras = 24;           ///< that observe the field
   int simulated_cameras = 1;  ///< n <= cameras; independent terms are scaled to `cameras`
+
+  friend bool operator==(const TelescopeSettings&, const TelescopeSettings&) = default;
 };
 
 struct PsfSettings {
   PsfModel model = PsfModel::kGaussian;
   Pixels sigma{0.6};
-  std::string file;
+  std::string file;              ///< absolute path; of the table model
   int phases = 0;                ///< of the prf renderer, 0: from the accuracy
   Pixels stamp_half_width{0.0};  ///< 0: from the accuracy
+
+  friend bool operator==(const PsfSettings&, const PsfSettings&) = default;
 };
 
 struct StellarFieldSettings {
-  std::string catalogue;  ///< path, resolved against the configuration file's folder
+  std::string catalogue;  ///< absolute path
   std::string catalogue_passband = "V";
   std::string catalogue_unit = "deg";      ///< of ra and dec: deg or rad
   double assumed_bv = 0.6;                 ///< colour B-V in the catalogue's system where the catalogue has none
   double assumed_teff = 5778.0;            ///< K, for V -> P where the catalogue has none
   Magnitude faint_limit{99.0};             ///< stars fainter than this are left out
-  std::string background_catalogue;        ///< optional second file, e.g. made by `astroid field`
+  std::string background_catalogue;        ///< absolute path; optional second file, e.g. made by `astroid field`
   ElectronsPerSecond sky_background{0.0};  ///< per pixel, detected
+
+  friend bool operator==(const StellarFieldSettings&, const StellarFieldSettings&) = default;
 };
 
 struct CcdSettings {
@@ -83,6 +95,8 @@ struct CcdSettings {
   Gain gain{1.0};
   Adu bias{0.0};
   int adc_bits = 16;
+
+  friend bool operator==(const CcdSettings&, const CcdSettings&) = default;
 };
 
 struct PhotometrySettings {
@@ -96,11 +110,15 @@ struct PhotometrySettings {
   bool subtract_bias = true;
   bool apply_gain = true;
   Magnitude target_limit{99.0};  ///< stars brighter than this are targets
+
+  friend bool operator==(const PhotometrySettings&, const PhotometrySettings&) = default;
 };
 
 struct AnalysisSettings {
   Seconds bin{3600.0};               ///< duration to which noise is averaged
   double uncontaminated_spr = 1e-3;  ///< stars with less contamination judge magnitude recovery
+
+  friend bool operator==(const AnalysisSettings&, const AnalysisSettings&) = default;
 };
 
 struct OutputSettings {
@@ -108,6 +126,8 @@ struct OutputSettings {
   int images_every = 1;
   LightCurveOutput light_curves = LightCurveOutput::kTargets;
   std::vector<std::int64_t> dump_steps;  ///< exposures whose intermediate maps are written
+
+  friend bool operator==(const OutputSettings&, const OutputSettings&) = default;
 };
 
 struct Mission {
@@ -120,6 +140,8 @@ struct Mission {
   PhotometrySettings photometry;
   AnalysisSettings analysis;
   OutputSettings output;
+
+  friend bool operator==(const Mission&, const Mission&) = default;
 };
 
 }  // namespace astroid

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "configuration_parameter.hpp"
+
+namespace astroid::configuration {
+
+namespace {
+
+struct Section {
+  std::string_view path;
+  std::string_view meaning;
+};
+
+constexpr std::array kSections = {
+    Section{"Simulation", "What is simulated, for how long and how accurately."},
+    Section{"Satellite", "Where the spacecraft looks and how well it holds still."},
+    Section{"Satellite/Pointing", "Direction of the optical axis, ICRS."},
+    Section{"Satellite/Jitter", "Attitude noise, shared by all cameras."},
+    Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
+    Section{"PSF", "The image of a star."},
+    Section{"StellarField", "The stars and the sky behind them."},
+    Section{"CCD", "The detector and its electronics."},
+    Section{"CCD/OpticalAxis",
+            "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
+    Section{"CCD/SubField", "The part of the detector that is simulated; without this element all of it."},
+    Section{"Photometry", "How fluxes are measured."},
+    Section{"Photometry/Annulus", "Ring around a star in which the local background is measured."},
+    Section{"Photometry/Calibration", "Which corrections are applied to the images before they are measured."},
+    Section{"Analysis", "What is made of the fluxes."},
+    Section{"Output", "What is written."},
+};
+
+std::vector<Parameter> whole_table() {
+  std::vector<Parameter> table;
+  for (auto part :
+       {simulation_parameters, satellite_parameters, telescope_parameters, psf_parameters, stellar_field_parameters,
+        ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+    for (Parameter& parameter : part()) table.push_back(std::move(parameter));
+  }
+  return table;
+}
+
+void add_once(std::vector<std::string>& names, std::string_view name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.emplace_back(name);
+}
+
+/// The part of `path` below `parent`, empty where it is not below it.
+std::string_view below(std::string_view path, std::string_view parent) {
+  if (parent.empty()) return path;
+  if (path.size() <= parent.size() || !path.starts_with(parent) || path[parent.size()] != '/') return {};
+  return path.substr(parent.size() + 1);
+}
+
+}  // namespace
+
+std::span<const Parameter> parameter_table() {
+  static const std::vector<Parameter> table = whole_table();
+  return table;
+}
+
+const Parameter* find_parameter(std::string_view path) {
+  const auto table = parameter_table();
+  const auto found = std::find_if(table.begin(), table.end(), [&](const Parameter& p) { return p.path == path; });
+  return found == table.end() ? nullptr : &*found;
+}
+
+bool is_section(std::string_view path) {
+  return std::any_of(kSections.begin(), kSections.end(), [&](const Section& s) { return s.path == path; });
+}
+
+std::string_view section_meaning(std::string_view path) {
+  const auto found = std::find_if(kSections.begin(), kSections.end(), [&](const Section& s) { return s.path == path; });
+  return found == kSections.end() ? std::string_view() : found->meaning;
+}
+
+std::vector<std::string> element_names(std::string_view section) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameter_table()) {
+    const std::string_view rest = below(parameter.path, section);
+    if (rest.empty()) continue;
+    const auto slash = rest.find('/');
+    if (slash == std::string_view::npos && parameter.is_attribute) continue;
+    add_once(names, rest.substr(0, slash));
+  }
+  return names;
+}
+
+std::vector<std::string> attribute_names(std::string_view element) {
+  std::vector<std::string> names;
+  for (const Parameter& parameter : parameter_table()) {
+    if (parameter.is_attribute && parent_path(parameter.path) == element) add_once(names, last_name(parameter.path));
+  }
+  return names;
+}
+
+std::string_view last_name(std::string_view path) {
+  const auto slash = path.rfind('/');
+  return slash == std::string_view::npos ? path : path.substr(slash + 1);
+}
+
+std::string_view parent_path(std::string_view path) {
+  const auto slash = path.rfind('/');
+  return slash == std::string_view::npos ? std::string_view() : path.substr(0, slash);
+}
+
+std::string join_path(std::string_view parent, std::string_view name) {
+  std::string path(parent);
+  if (!path.empty()) path += '/';
+  return path += name;
+}
+
+}  // namespace astroid::configuration

@@ -1,0 +1,99 @@
+#include "configuration_parameter.hpp"
+
+namespace astroid::configuration {
+
+std::vector<Parameter> photometry_parameters() {
+  return {
+      {.path = "Photometry/Method",
+       .kind = Kind::kChoice,
+       .fallback = "mask",
+       .choices = {"aperture", "mask", "weighted"},
+       .meaning = "How a flux is extracted: circular aperture, optimal binary mask, or weighted mask.",
+       .example = "mask",
+       .assign =
+           [](Mission& m, const Value& v) {
+             constexpr PhotometryMethod kMethods[] = {PhotometryMethod::kAperture, PhotometryMethod::kMask,
+                                                      PhotometryMethod::kWeighted};
+             m.photometry.method = kMethods[v.choice];
+           }},
+      {.path = "Photometry/ApertureRadius",
+       .unit = "px",
+       .range = from_to(0.1, 1000),
+       .fallback = "3",
+       .meaning = "Radius of the circular aperture.",
+       .example = "3",
+       .assign = [](Mission& m, const Value& v) { m.photometry.aperture_radius = Pixels(v.real); }},
+      {.path = "Photometry/MaskWindow",
+       .kind = Kind::kInteger,
+       .unit = "px",
+       .range = from_to(1, 1000),
+       .fallback = "6",
+       .meaning = "Side of the square window in which a mask may choose pixels.",
+       .example = "6",
+       .assign = [](Mission& m, const Value& v) { m.photometry.mask_window = static_cast<int>(v.integer); }},
+      {.path = "Photometry/MaskReach",
+       .unit = "px",
+       .range = from_to(0, 10000),
+       .fallback = "0",
+       .meaning = "Neighbours farther from the target than this are ignored when its mask is made; 0: as far as the "
+                  "accuracy needs.",
+       .example = "12",
+       .assign = [](Mission& m, const Value& v) { m.photometry.mask_reach = Pixels(v.real); }},
+      {.path = "Photometry/Background",
+       .kind = Kind::kChoice,
+       .fallback = "local",
+       .choices = {"known", "local", "mesh"},
+       .meaning = "How the sky is subtracted: by its true value, by a ring around each star, or by a mesh over the "
+                  "image.",
+       .example = "local",
+       .assign =
+           [](Mission& m, const Value& v) {
+             constexpr BackgroundMethod kMethods[] = {BackgroundMethod::kKnown, BackgroundMethod::kLocal,
+                                                      BackgroundMethod::kMesh};
+             m.photometry.background = kMethods[v.choice];
+           }},
+      {.path = "Photometry/Annulus/Inner",
+       .unit = "px",
+       .range = from_to(0, 10000),
+       .fallback = "5",
+       .meaning = "Inner radius of the ring of the local background.",
+       .example = "5",
+       .assign = [](Mission& m, const Value& v) { m.photometry.annulus_inner = Pixels(v.real); }},
+      {.path = "Photometry/Annulus/Outer",
+       .unit = "px",
+       .range = from_to(0, 10000),
+       .fallback = "8",
+       .meaning = "Outer radius of the ring of the local background.",
+       .example = "8",
+       .assign = [](Mission& m, const Value& v) { m.photometry.annulus_outer = Pixels(v.real); }},
+      {.path = "Photometry/Mesh",
+       .kind = Kind::kInteger,
+       .unit = "px",
+       .range = from_to(4, 10000),
+       .fallback = "64",
+       .meaning = "Side of a cell of the background mesh.",
+       .example = "64",
+       .assign = [](Mission& m, const Value& v) { m.photometry.mesh = static_cast<int>(v.integer); }},
+      {.path = "Photometry/Calibration/Bias",
+       .kind = Kind::kBoolean,
+       .fallback = "on",
+       .meaning = "Whether the bias is subtracted.",
+       .example = "on",
+       .assign = [](Mission& m, const Value& v) { m.photometry.subtract_bias = v.flag; }},
+      {.path = "Photometry/Calibration/Gain",
+       .kind = Kind::kBoolean,
+       .fallback = "on",
+       .meaning = "Whether ADU are converted to electrons.",
+       .example = "on",
+       .assign = [](Mission& m, const Value& v) { m.photometry.apply_gain = v.flag; }},
+      {.path = "Photometry/TargetLimit",
+       .unit = "mag",
+       .range = from_to(-30, 99),
+       .fallback = "99",
+       .meaning = "Stars brighter than this, in the zero point's passband, are targets.",
+       .example = "13",
+       .assign = [](Mission& m, const Value& v) { m.photometry.target_limit = Magnitude(v.real); }},
+  };
+}
+
+}  // namespace astroid::configuration

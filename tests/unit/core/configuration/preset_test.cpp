@@ -1,0 +1,73 @@
+// The shipped presets: what they say arrives in the Mission, with its origin.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <fstream>
+
+#include "astroid/core/configuration.hpp"
+#include "astroid/core/error.hpp"
+#include "configuration_fixture.hpp"
+
+namespace astroid {
+namespace {
+
+using test::FolderWithCatalogue;
+using test::plato_preset;
+
+TEST(PlatoPreset, FillsEveryPartOfTheMission) {
+  const FolderWithCatalogue data;
+  const Mission m = read_configuration(plato_preset(), {.overrides = {}, .data_folders = {data.path()}}).mission;
+  EXPECT_EQ(m.simulation.type, DetectorType::kCcd);
+  EXPECT_EQ(m.simulation.seed, 42U);
+  EXPECT_EQ(m.simulation.exposures, 576);
+  EXPECT_EQ(m.simulation.cycle, Seconds(25));
+  EXPECT_EQ(m.simulation.exposure_time, Seconds(21));
+  EXPECT_EQ(m.simulation.start_mjd, 61406.0);
+  EXPECT_EQ(m.satellite.ra, Degrees(95.3104));
+  EXPECT_EQ(m.satellite.dec, Degrees(-47.8869));
+  EXPECT_EQ(m.satellite.jitter.model, JitterModel::kRedNoise);
+  EXPECT_EQ(m.satellite.jitter.roll, Arcseconds(0.040));
+  EXPECT_EQ(m.satellite.jitter.timescale, Seconds(250));
+  EXPECT_EQ(m.telescope.zero_point, Magnitude(20.62));
+  EXPECT_EQ(m.telescope.zero_point_passband, "P");
+  EXPECT_EQ(m.telescope.cameras, 24);
+  EXPECT_EQ(m.telescope.simulated_cameras, 1);
+  EXPECT_EQ(m.psf.sigma, Pixels(0.6));
+  EXPECT_EQ(m.field.catalogue, (data.path() / test::kPlatoCatalogue).string());
+  EXPECT_EQ(m.field.catalogue_passband, "V_T");
+  EXPECT_EQ(m.field.sky_background, ElectronsPerSecond(45));
+  EXPECT_EQ(m.ccd.columns, 4510);
+  EXPECT_TRUE(m.ccd.has_sub_field);
+  EXPECT_EQ(m.ccd.sub_x0, 1755);
+  EXPECT_EQ(m.ccd.sub_rows, 1000);
+  EXPECT_EQ(m.ccd.axis_x, 2254.5);
+  EXPECT_EQ(m.ccd.dsnu, 0.15);
+  EXPECT_EQ(m.ccd.prnu, 0.01);
+  EXPECT_EQ(m.ccd.readout_noise, Electrons(50.2));
+  EXPECT_EQ(m.ccd.gain, Gain(25));
+  EXPECT_EQ(m.photometry.method, PhotometryMethod::kMask);
+  EXPECT_EQ(m.output.images, ImageOutput::kFirst);
+}
+
+TEST(PlatoPreset, NamesTheLineOfEveryParameterItGives) {
+  const FolderWithCatalogue data;
+  const auto resolved = read_configuration(plato_preset(), {.overrides = {}, .data_folders = {data.path()}});
+  std::vector<std::string> lines;
+  std::ifstream stream(plato_preset());
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  int from_file = 0;
+  for (const ResolvedParameter& parameter : resolved.parameters) {
+    if (parameter.origin == "default") continue;
+    const std::string prefix = plato_preset().string() + ":";
+    ASSERT_TRUE(parameter.origin.starts_with(prefix)) << parameter.path << " from " << parameter.origin;
+    const auto line = static_cast<std::size_t>(std::stoul(parameter.origin.substr(prefix.size())));
+    ASSERT_LE(line, lines.size());
+    const std::string name = parameter.path.substr(parameter.path.rfind('/') + 1);
+    EXPECT_NE(lines[line - 1].find(name), std::string::npos) << parameter.path << " is not on line " << line;
+    ++from_file;
+  }
+  EXPECT_GE(from_file, 40);
+}
+
+}  // namespace
+}  // namespace astroid
