@@ -1,0 +1,82 @@
+#include "astroid/core/jitter_noise.hpp"
+
+#include <cmath>
+#include <cstddef>
+
+#include "astroid/core/error.hpp"
+#include "astroid/core/math.hpp"
+
+namespace astroid {
+
+namespace {
+
+// Variance of the average over a time a (in units of tau) of a unit process: 2 (a - 1 + e^-a) / a^2.
+double averaged_variance(double a) {
+  constexpr double kSeries =
+      1e-2;  // where the cancellation of the closed form and the series' next term are both below 5e-14
+  if (a < kSeries) return 1.0 - a / 3.0 * (1.0 - a / 4.0 * (1.0 - a / 5.0 * (1.0 - a / 6.0)));
+  return 2.0 * (a + det::expm1(-a)) / (a * a);
+}
+
+// Covariance of two such averages, apart from e^(-distance / tau): (2 sinh(a/2) / a)^2.
+double averaged_covariance(double a) {
+  if (a == 0.0) return 1.0;
+  const double root = (det::expm1(0.5 * a) - det::expm1(-0.5 * a)) / a;
+  return root * root;
+}
+
+}  // namespace
+
+double aperture_gradient(std::span<const double> weights, std::span<const double> fractions,
+                         std::span<const double> gradient) {
+  ASTROID_CHECK_EQ(weights.size(), fractions.size());
+  ASTROID_CHECK_EQ(weights.size(), gradient.size());
+  double flux = 0.0;
+  double slope = 0.0;
+  for (std::size_t n = 0; n < weights.size(); ++n) {
+    flux += weights[n] * fractions[n];
+    slope += weights[n] * gradient[n];
+  }
+  return slope / flux;
+}
+
+double jitter_noise(double gx, double gy, double sx, double sy) {
+  return det::hypot(gx * sx, gy * sy);
+}
+
+double jittered_sigma(double sigma, double rms) {
+  return det::hypot(sigma, rms);
+}
+
+double prnu_jitter_noise(double prnu, std::span<const double> dpdx, std::span<const double> dpdy, double sx,
+                         double sy) {
+  ASTROID_CHECK_EQ(dpdx.size(), dpdy.size());
+  double sum = 0.0;
+  for (std::size_t n = 0; n < dpdx.size(); ++n) {
+    const double x = sx * dpdx[n];
+    const double y = sy * dpdy[n];
+    sum += x * x + y * y;
+  }
+  return prnu * std::sqrt(sum);
+}
+
+double prnu_static_noise(double prnu, std::span<const double> fractions) {
+  double sum = 0.0;
+  for (const double p : fractions) sum += p * p;
+  return prnu * std::sqrt(sum);
+}
+
+double ou_mean_rms(double rms, Seconds tau, const Cadence& cadence) {
+  const double duration = cadence.exposure_time / tau;
+  const double step = cadence.cycle / tau;
+  const double covariance = averaged_covariance(duration);
+  const auto n = static_cast<double>(cadence.exposures);
+  double sum = 0.0;
+  for (long k = cadence.exposures - 1; k > 0; --k) {
+    const auto lag = static_cast<double>(k);
+    sum += (n - lag) * det::exp(-lag * step);  // smallest first
+  }
+  return rms * std::sqrt((averaged_variance(duration) + 2.0 * covariance * sum / n) / n);
+}
+
+}  // namespace astroid
