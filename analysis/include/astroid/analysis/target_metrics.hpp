@@ -1,0 +1,127 @@
+// Everything the analysis says of one target: a row of analysis/targets.csv.
+//
+// Noise is relative to the flux of the target alone in its aperture, predicted and measured alike (F7). A light curve
+// carries contaminants too, so its relative noise is divided by 1 - SPR before it is compared.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "astroid/analysis/motion.hpp"
+#include "astroid/analysis/nsr_accumulator.hpp"
+#include "astroid/analysis/truth.hpp"
+#include "astroid/core/mission.hpp"
+#include "astroid/photometry/estimator.hpp"
+
+namespace astroid {
+
+/// What the analysis must know of a run besides its stars.
+struct RunSetup {
+  double exposures_per_bin = 144.0;  ///< bin / cycle
+  int cameras = 1;                   ///< N that observe the field
+  int simulated_cameras = 1;         ///< n <= N whose mean the measured series is
+  double prnu = 0.0;                 ///< rms of pixel gains that calibration leaves, relative
+  double uncontaminated_spr = 1e-3;  ///< stars with less contamination judge magnitude recovery
+};
+/// @param prnu  pixel gains are not corrected, so the whole of CCD/PRNU is left, unless the caller knows better.
+RunSetup run_setup(const Mission& mission);
+
+/// Noise of the mean over one bin by its cause, ppm of the target's flux in the aperture.
+struct NoiseByCause {
+  double photon = 0.0;        ///< of the target
+  double contaminants = 0.0;  ///< photon noise of all other stars
+  double background = 0.0;    ///< photon noise of sky and dark current under the aperture
+  double readout = 0.0;
+  double quantisation = 0.0;
+  double background_estimate = 0.0;  ///< of the local background
+  double jitter = 0.0;               ///< light that crosses the edge of the aperture; common to all cameras
+  double prnu_jitter = 0.0;          ///< the star moving over unequal pixels; differs from camera to camera
+  [[nodiscard]] double total() const;
+};
+
+/// Predicted noise of one target.
+struct PredictedNoise {
+  double exposure = 0.0;           ///< NSR of one exposure of one camera, jitter included
+  NoiseByCause bin;                ///< N cameras, ppm
+  double bin_simulated = 0.0;      ///< total with the n simulated cameras, ppm: beside what was measured
+  double bin_within = 0.0;         ///< what F19(a) should measure with the n simulated cameras, ppm
+  double bin_common = 0.0;         ///< the part that cameras share (jitter), ppm
+  double bin_within_common = 0.0;  ///< the same of bin_within: jitter faster than a bin
+};
+
+/// Predicts the noise of a target: independent terms fall as 1 / sqrt(cameras * exposures) (F8), jitter by the motion
+/// that is left in the mean and not with cameras (F25), PRNU with jitter by the motion and with cameras (F27).
+PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup);
+
+/// Differences of magnitude, each a cause: measured - true = contamination + aperture_loss + residual.
+struct MagnitudeCauses {
+  double contamination = 0.0;                                  ///< 2.5 log10(1 - SPR_tot), <= 0: neighbours brighten
+  double aperture_loss = 0.0;                                  ///< -2.5 log10(enclosed fraction), >= 0
+  double residual = std::numeric_limits<double>::quiet_NaN();  ///< what neither explains: saturation, background, bias
+};
+
+struct TargetMetrics {
+  std::string id;
+  double mag = 0.0;
+  double x = 0.0, y = 0.0;
+  int mask_pixels = 0;
+  double enclosed_fraction = 0.0;
+  double nsr_exposure = 0.0;  ///< predicted.exposure
+  double nsr_1h_ppm = 0.0;    ///< predicted.bin.total()
+  PredictedNoise predicted;
+  double spr_tot = 0.0;         ///< F20, sky excluded
+  double crowdsap = 0.0;        ///< 1 - spr_tot (F22)
+  double flfrcsap = 0.0;        ///< target's flux in the aperture / all flux of the target (F22)
+  double flux_in = 0.0;         ///< e- per exposure, all of the PSF
+  double flux_expected = 0.0;   ///< e- per exposure, target and contaminants in the aperture
+  std::uint32_t flags = 0;      ///< measurement_flag bits
+  double prnu_magnitude = 0.0;  ///< expected rms error of the magnitude by fixed unequal pixels, n cameras (F28), mag
+
+  std::int64_t exposures = 0, missing = 0;
+  double flux_measured = std::numeric_limits<double>::quiet_NaN();  ///< mean, e- per exposure, in the aperture
+  double flux_err = std::numeric_limits<double>::quiet_NaN();       ///< standard error of that mean
+  double mag_measured = std::numeric_limits<double>::quiet_NaN();   ///< of flux_measured; NaN unless it is positive
+  double mag_err = std::numeric_limits<double>::quiet_NaN();
+  double delta_mag = std::numeric_limits<double>::quiet_NaN();  ///< mag_measured - mag
+  MagnitudeCauses causes;
+  NoiseEstimate nsr_exposure_measured;   ///< relative, n cameras
+  NoiseEstimate nsr_1h_within_measured;  ///< ppm, F19(a), n cameras
+  NoiseEstimate nsr_1h_measured;         ///< ppm, F19(b), n cameras
+  NoiseEstimate nsr_1h_within_scaled;    ///< the same scaled to N cameras
+  NoiseEstimate nsr_1h_scaled;
+  std::int64_t bins = 0;
+};
+
+/// The row of a target as far as it is known beforehand.
+TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estimator, const StarMotion& motion,
+                             const RunSetup& setup);
+
+/// Adds what was measured.
+/// @param reference  e- per exposure, the flux that the series is relative to.
+/// @param flags      measurement_flag bits seen in any exposure, added to those of the estimator.
+void add_measurement(TargetMetrics& target, const SeriesSummary& series, double reference, std::uint32_t flags,
+                     const RunSetup& setup);
+
+/// A noise of n simulated cameras as it would be with N: only what cameras do not share falls.
+/// @param common  the shared part, in the unit of `simulated`; a measured noise below it is all taken as shared.
+NoiseEstimate scale_to_cameras(const NoiseEstimate& simulated, double common, const RunSetup& setup);
+
+/// True for a star whose flux means what it says: not saturated, cut, defective, outside or without light.
+bool is_clean(const TargetMetrics& target);
+/// is_clean, measured, and with less contamination than the configured share.
+bool is_uncontaminated(const TargetMetrics& target, const RunSetup& setup);
+
+/// A measurement flag and what it means.
+struct FlagName {
+  std::uint32_t bit;
+  std::string_view name;
+  std::string_view meaning;
+};
+const std::vector<FlagName>& flag_names();
+/// "edge|saturated", or "" without flags; an unknown bit appears as "bit12".
+std::string flag_text(std::uint32_t flags);
+
+}  // namespace astroid
