@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "astroid/core/photometric.hpp"
 #include "magnitude_bins.hpp"
 
 namespace astroid {
 
 namespace {
-
-// 2.5 / ln 10 (F2).
-constexpr double kMagnitudesPerRelative = 1.0857362047581294;
 
 double relative_difference(const TargetMetrics& target) {
   return target.flux_measured / target.flux_expected - 1.0;
@@ -42,7 +40,7 @@ RecoveryBin recovery_bin(const std::vector<const TargetMetrics*>& stars, const R
     residual.push_back(target->causes.residual);
     flux.push_back(relative_difference(*target));
     if (std::isfinite(error) && error > 0.0) {
-      expected.push_back(kMagnitudesPerRelative * error);
+      expected.push_back(kPogson * error);
       pull.push_back(relative_difference(*target) / error);
     }
   }
@@ -61,7 +59,7 @@ RecoveryBin recovery_bin(const std::vector<const TargetMetrics*>& stars, const R
 
 double expected_flux_error(const TargetMetrics& target) {
   const double noise = target.flux_err / std::abs(target.flux_measured);
-  const double fixed = target.prnu_magnitude / kMagnitudesPerRelative;
+  const double fixed = target.prnu_magnitude / kPogson;
   return std::sqrt(noise * noise + fixed * fixed);
 }
 
@@ -96,11 +94,11 @@ RecoverySummary recovery_summary(std::span<const TargetMetrics> targets, const R
   if (out.stars == 0) return out;
   const double n = static_cast<double>(out.stars);
   const double mean = sum / weight;
-  out.bias = -kMagnitudesPerRelative * mean;
+  out.bias = -kPogson * mean;
   out.pull_width = std::sqrt(squares / n);
   const double chi2 = std::max(0.0, squares - mean * mean * weight);
   const double raise = out.stars > 1 ? std::max(1.0, chi2 / (n - 1.0)) : 1.0;
-  out.bias_err = kMagnitudesPerRelative * std::sqrt(raise / weight);
+  out.bias_err = kPogson * std::sqrt(raise / weight);
   return out;
 }
 

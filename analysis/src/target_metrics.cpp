@@ -3,14 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "astroid/core/photometric.hpp"
+
 namespace astroid {
 
 namespace {
 
 constexpr double kPpm = 1e6;
-constexpr double kPogson = 2.5;
-// 2.5 / ln 10: a relative error as magnitudes (F2).
-constexpr double kMagnitudesPerRelative = 1.0857362047581294;
+constexpr double kMagnitudeFactor = 2.5;
 // With so many bins their means tell the error of the mean flux, slow noise included; with fewer they scatter too much.
 constexpr std::int64_t kBinsForError = 10;
 constexpr std::uint32_t kUnclean = measurement_flag::kEdge | measurement_flag::kSaturated |
@@ -102,10 +102,10 @@ TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estima
   target.crowdsap = 1.0 - estimator.spr_total;
   target.flfrcsap = estimator.enclosed_fraction;
   target.flux_expected = estimator.budget.target + estimator.budget.contaminants;
-  target.prnu_magnitude = kMagnitudesPerRelative * setup.prnu * estimator.prnu_static * (1.0 - estimator.spr_total) /
+  target.prnu_magnitude = kPogson * setup.prnu * estimator.prnu_static * (1.0 - estimator.spr_total) /
                           std::sqrt(static_cast<double>(setup.simulated_cameras));
-  target.causes.contamination = kPogson * std::log10(1.0 - estimator.spr_total);
-  target.causes.aperture_loss = -kPogson * std::log10(estimator.enclosed_fraction);
+  target.causes.contamination = kMagnitudeFactor * std::log10(1.0 - estimator.spr_total);
+  target.causes.aperture_loss = -kMagnitudeFactor * std::log10(estimator.enclosed_fraction);
   return target;
 }
 
@@ -144,9 +144,9 @@ void add_measurement(TargetMetrics& target, const SeriesSummary& series, double 
   target.flux_err = std::abs(target.flux_measured) * relative;
   if (target.flux_measured > 0.0) {
     // A ratio of fluxes, so the zero point does not enter.
-    target.delta_mag = -kPogson * std::log10(target.flux_measured / target.flux_in);
+    target.delta_mag = -kMagnitudeFactor * std::log10(target.flux_measured / target.flux_in);
     target.mag_measured = target.mag + target.delta_mag;
-    target.mag_err = kMagnitudesPerRelative * relative;
+    target.mag_err = kPogson * relative;
     target.causes.residual = target.delta_mag - target.causes.contamination - target.causes.aperture_loss;
   }
   // From noise relative to all light in the aperture to noise relative to the target's.

@@ -6,8 +6,8 @@
 #include <iostream>
 #include <vector>
 
-#include "astroid/analysis/motion.hpp"
 #include "astroid/analysis/nsr_accumulator.hpp"
+#include "astroid/core/jitter_noise.hpp"
 #include "astroid/test/gaussian_series.hpp"
 
 namespace astroid {
@@ -98,7 +98,7 @@ TEST(NoiseEstimators, SeeRedNoiseInBinMeansAsTheCovarianceSays) {
     }
     statistics.add(star, 0, series);
   }
-  const RetainedVariance kept = red_noise_retained(kTimescale, {0.0, kCycle, kHour});
+  const double kept = std::pow(ou_mean_rms(1.0, Seconds(kTimescale), {Seconds(kCycle), Seconds(0.0), kHour}), 2.0);
   double between = 0.0;
   std::vector<double> within;
   for (const SeriesSummary& s : statistics.summaries()) {
@@ -106,10 +106,10 @@ TEST(NoiseEstimators, SeeRedNoiseInBinMeansAsTheCovarianceSays) {
     within.push_back(s.bin_within.value);
   }
   // Successive hours are nearly independent (e^-14.4 at their distance): 23 * 400 degrees of freedom.
-  const double expected = kSigma * kSigma * kept.bin;
+  const double expected = kSigma * kSigma * kept;
   EXPECT_NEAR(between / expected, 1.0, 4.0 * std::sqrt(2.0 / (23.0 * kStars)) + 0.01);
   const double n = static_cast<double>(kHour);
-  const double inside = kSigma * std::sqrt((1.0 - kept.bin) * n / (n - 1.0) / n);
+  const double inside = kSigma * std::sqrt((1.0 - kept) * n / (n - 1.0) / n);
   // The mean of the deviations is below the root of the mean variance: about 2 % for the 14 correlation times in an
   // hour.
   const MeanEstimate measured = mean_estimate(within);

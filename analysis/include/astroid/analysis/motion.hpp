@@ -1,8 +1,6 @@
 // How much a star moves on the detector, and what of that is left in a mean over time.
 #pragma once
 
-#include <cstdint>
-
 #include "astroid/core/mission.hpp"
 
 namespace astroid {
@@ -22,25 +20,10 @@ struct StarMotion {
   MotionCovariance bin;
 };
 
-/// Times of a series of exposures, s.
-struct Cadence {
-  double exposure = 0.0;     ///< duration of one exposure
-  double cycle = 0.0;        ///< from start to start
-  std::int64_t per_bin = 1;  ///< exposures in a bin
-};
-
-/// The part of the variance of an Ornstein-Uhlenbeck process that is left in its mean over one exposure, and in the
-/// mean of all exposures of a bin (each of them a mean over the exposure).
-/// @param timescale  s, > 0.  @source F25, F29: exact for any cadence with exposure <= cycle.
-struct RetainedVariance {
-  double exposure = 1.0;
-  double bin = 1.0;
-};
-RetainedVariance red_noise_retained(double timescale, const Cadence& cadence);
-
-/// Motion of a star by the mission's jitter model, at a place `offset_x`, `offset_y` px from the optical axis: yaw
-/// moves along x, pitch along y, roll around the axis. Zero for no jitter; a jitter file must be evaluated by its
-/// reader.
+/// Expected motion of a star by the mission's red-noise jitter, at a place `offset_x`, `offset_y` px from the optical
+/// axis: yaw moves along x, pitch along y, roll around the axis. Exact for an Ornstein-Uhlenbeck process averaged over
+/// exposures and bins. Zero without jitter; for a jitter file the pipeline takes the covariances from the file itself.
+/// @source F25, F29
 StarMotion star_motion(const Mission& mission, double offset_x, double offset_y);
 
 }  // namespace astroid

@@ -1,0 +1,74 @@
+#include "astroid/analysis/budget.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "astroid/core/photometric.hpp"
+
+namespace astroid {
+
+namespace {
+
+/// The electrons at which the first pixel saturates: full well, or the end of the ADC's range.
+double saturation_electrons(const CcdSettings& ccd) {
+  const double top = std::ldexp(1.0, ccd.adc_bits) - 1.0;
+  return std::min(ccd.full_well.value(), ((Adu(top) - ccd.bias) * ccd.gain).value());
+}
+
+}  // namespace
+
+PixelNoise expected_pixel_noise(const Mission& mission) {
+  const ElectronsPerSecond rate = mission.field.sky_background + mission.ccd.dark_current;
+  constexpr double kUniformVariance = 12.0;  // of a rounding error, 1/12 (F32)
+  return {(rate * mission.simulation.exposure_time).value(), mission.ccd.readout_noise.value(),
+          mission.ccd.gain.value() / std::sqrt(kUniformVariance)};
+}
+
+StarEstimator estimator_of_first(const Mission& mission, const PixelPsf& psf, std::span<const FieldStar> stars) {
+  const PhotometrySettings& photometry = mission.photometry;
+  const double reach =
+      std::max({static_cast<double>(photometry.mask_window), photometry.aperture_radius.value(),
+                photometry.background == BackgroundMethod::kLocal ? photometry.annulus_outer.value() : 0.0});
+  const PixelLayout layout({stamp_box(stars.front().position, reach + 1.0)});
+  constexpr std::array<std::size_t, 1> kFirst{0};
+  GroundModel model;
+  model.stars = stars;
+  model.targets = kFirst;
+  model.psf = &psf;
+  model.noise = expected_pixel_noise(mission);
+  model.gain = mission.ccd.gain;
+  model.bias = mission.ccd.bias;
+  model.contamination_limit = mission.analysis.uncontaminated_spr;
+  return build_estimators(layout, model, photometry).front();
+}
+
+std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& psf,
+                                       std::span<const double> magnitudes) {
+  const RunSetup setup = run_setup(mission);
+  const StarMotion motion = star_motion(mission, 0.0, 0.0);
+  const double background = expected_pixel_noise(mission).background;
+  double peak = 0.0;
+  psf.integrate({0.0, 0.0}, {0, 0, 1, 1}, {&peak, 1});
+  std::vector<BudgetRow> rows;
+  for (const double magnitude : magnitudes) {
+    BudgetRow row;
+    row.mag = magnitude;
+    row.electrons =
+        (electron_rate(Magnitude(magnitude), mission.telescope.zero_point) * mission.simulation.exposure_time).value();
+    row.peak_electrons = row.electrons * peak;
+    row.saturated = row.peak_electrons + background >= saturation_electrons(mission.ccd);
+    const std::array<FieldStar, 1> star{FieldStar{"", {0.0, 0.0}, row.electrons}};
+    const StarEstimator estimator = estimator_of_first(mission, psf, star);
+    row.mask_pixels = estimator.mask_pixels;
+    row.enclosed_fraction = estimator.enclosed_fraction;
+    row.nsr_exposure = estimator.nsr_exposure;
+    const PredictedNoise noise = predict_noise(estimator, motion, setup);
+    row.nsr_1h_ppm = noise.bin.total();
+    row.causes = noise.bin;
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace astroid
