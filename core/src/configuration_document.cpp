@@ -102,7 +102,8 @@ void read_parameter(const Parameter& parameter, const XmlElement& element, Draft
   }
   const std::string* unit = checked_unit(parameter, element, draft);
   if (unit == nullptr || draft.bad.contains(parameter.path)) return;
-  const std::string as_written = unit->empty() ? element.text : fmt::format("{} {}", element.text, *unit);
+  const bool shows_unit = !unit->empty() && !element.text.empty();
+  const std::string as_written = shows_unit ? fmt::format("{} {}", element.text, *unit) : element.text;
   take_value(parameter, element.text, *unit, as_written, place, draft.folders, draft);
 }
 
@@ -122,9 +123,9 @@ void read_element(const XmlElement& element, std::string_view section, Draft& dr
   const Parameter* parameter = find_parameter(path);
   const bool is_value = parameter != nullptr && !parameter->is_attribute;
   if (!is_value && !is_section(path)) {
-    const std::string_view kind = element.children.empty() ? "unknown parameter" : "unknown section";
-    complain(draft, place, path, {std::string(kind), "", suggest_element(element.name, section, draft)},
-             element.children.empty() ? element.text : std::string_view());
+    const bool seems_section = element.text.empty() && !(element.children.empty() && element.attributes.empty());
+    const std::string_view kind = seems_section ? "unknown section" : "unknown parameter";
+    complain(draft, place, path, {std::string(kind), "", suggest_element(element.name, section, draft)}, element.text);
     read_misspelt_section(element, section, draft);
     return;
   }
@@ -205,8 +206,11 @@ void read_override(std::string_view text, const std::vector<std::filesystem::pat
   Override change{trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1)), {}};
   const Parameter* parameter = find_parameter(change.path);
   if (parameter == nullptr) {
-    std::string suggestion = suggest_path(change.path);
-    complain(draft, place, change.path, {"unknown parameter", "", std::move(suggestion)}, change.value);
+    const bool names_section = is_section(change.path);
+    complain(draft, place, change.path,
+             {names_section ? "a section, not a parameter" : "unknown parameter", "",
+              names_section ? "" : suggest_path(change.path)},
+             change.value);
     return;
   }
   const std::string as_written(change.value);
@@ -255,7 +259,9 @@ void fill_defaults(Draft& draft) {
     } else if (!parameter.fallback.empty()) {
       ParsedValue parsed = parse_value(parameter, parameter.fallback, parameter.unit, {});
       if (parsed.error) throw BugError(fmt::format("default of {}: {}", parameter.path, parsed.error->message));
-      draft.given.emplace(parameter.path, Given{std::move(parsed.value), "", 0, std::string(parameter.fallback)});
+      const std::string as_written =
+          fmt::format("{}{}{} (default)", parameter.fallback, parameter.unit.empty() ? "" : " ", parameter.unit);
+      draft.given.emplace(parameter.path, Given{std::move(parsed.value), "", 0, as_written});
     }
   }
 }

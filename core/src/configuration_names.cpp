@@ -40,8 +40,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   std::string best;
   std::size_t best_distance = kLongestName;
   for (const std::string& candidate : candidates) {
-    // One letter in three may be wrong; a word that is the beginning of a longer one counts as near.
-    const std::size_t allowed = std::max<std::size_t>(1, std::min(name.size(), candidate.size()) / 3);
+    // One letter in three may be wrong, one in a word of two; a word that is the beginning of a longer one is near.
+    const std::size_t shorter = std::min(name.size(), candidate.size());
+    const std::size_t allowed = shorter == 2 ? 1 : (shorter + 1) / 3;
     const std::size_t distance = damerau_levenshtein(name, candidate);
     const bool is_beginning = name.size() >= 3 && candidate.size() > name.size() &&
                               equal_ignoring_case(name, std::string_view(candidate).substr(0, name.size()));

@@ -69,15 +69,21 @@ std::string suggest_attribute(std::string_view name, std::string_view element, D
 }
 
 std::string suggest_path(std::string_view path) {
-  for (const std::string& candidate : all_paths()) {
-    if (equal_ignoring_case(last_name(candidate), last_name(path))) return fmt::format("did you mean {}?", candidate);
+  const std::vector<std::string> paths = all_paths();
+  for (const std::string& candidate : paths) {
+    if (equal_ignoring_case(candidate, path)) return fmt::format("did you mean {}?", candidate);
   }
-  const std::string near = nearest_name(path, all_paths());
-  if (!near.empty()) return fmt::format("did you mean {}?", near);
+  std::vector<std::string> same_name;
   std::vector<std::string> names;
-  for (const std::string& candidate : all_paths()) names.emplace_back(last_name(candidate));
+  for (const std::string& candidate : paths) {
+    names.emplace_back(last_name(candidate));
+    if (equal_ignoring_case(names.back(), last_name(path))) same_name.push_back(candidate);
+  }
+  if (!same_name.empty()) return fmt::format("did you mean {}?", fmt::join(same_name, " or "));
+  const std::string near = nearest_name(path, paths);
+  if (!near.empty()) return fmt::format("did you mean {}?", near);
   const std::string near_name = nearest_name(last_name(path), names);
-  for (const std::string& candidate : all_paths()) {
+  for (const std::string& candidate : paths) {
     if (!near_name.empty() && last_name(candidate) == near_name) return fmt::format("did you mean {}?", candidate);
   }
   return {};

@@ -38,7 +38,8 @@ std::string as_string(const xmlChar* text) {
 void on_error(void* user_data, xmlErrorPtr error) {
   auto& findings = *static_cast<Findings*>(static_cast<xmlParserCtxt*>(user_data)->_private);
   if (error == nullptr || error->level < XML_ERR_ERROR || !findings.message.empty()) return;
-  findings.message = error->message == nullptr ? "unknown error" : std::string(trimmed(error->message));
+  const std::string_view text = error->message == nullptr ? "unknown error" : trimmed(error->message);
+  findings.message = std::string(text.substr(0, text.find('\n')));
   findings.line = error->line;
 }
 
@@ -128,6 +129,12 @@ std::string xml_escaped(std::string_view text) {
         break;
       case '"':
         escaped += "&quot;";
+        break;
+      case '\n':
+        escaped += "&#10;";
+        break;
+      case '\t':
+        escaped += "&#9;";
         break;
       default:
         escaped += c;

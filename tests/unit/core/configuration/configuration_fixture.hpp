@@ -26,7 +26,7 @@ class FolderWithCatalogue {
     folder_.write("stars.csv", "ra,dec,mag\n");
   }
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }
-  [[nodiscard]] std::filesystem::path write(const std::string& name, const std::string& text) const {
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
     return folder_.write(name, text);
   }
 
