@@ -79,14 +79,22 @@ inline double far_tail(double r) {
   return polynomial(r - kFarTail, kE) / polynomial(r - kFarTail, kF);
 }
 
-inline double quantile(std::uint32_t word) {
+/// Probability of the word minus 1/2: exact, odd under word -> ~word.
+inline double centred(std::uint32_t word) {
   constexpr std::uint32_t kSign = 0x80000000U;
   constexpr double kStep = 0x1p-32;
-  const double q = (static_cast<double>(static_cast<std::int32_t>(word ^ kSign)) + 0.5) * kStep;  // exact
-  if (std::fabs(q) <= kCentralHalfWidth) return central(q);
-  // The tail is at least 2^-33 = e^-22.9, so sqrt(-ln tail) never reaches 5. 0.5 - |q| is exact.
-  const double r = std::sqrt(-log_of_positive(0.5 - std::fabs(q)));
+  return (static_cast<double>(static_cast<std::int32_t>(word ^ kSign)) + 0.5) * kStep;
+}
+
+/// Quantile for |q| > 0.425 of a 32-bit word. The tail is at least 2^-33 = e^-22.9, so sqrt(-ln tail) stays below 5.
+inline double tail(double q) {
+  const double r = std::sqrt(-log_of_positive(0.5 - std::fabs(q)));  // the difference is exact
   return std::copysign(near_tail(r), q);
+}
+
+inline double quantile(std::uint32_t word) {
+  const double q = centred(word);
+  return std::fabs(q) <= kCentralHalfWidth ? central(q) : tail(q);
 }
 
 inline double quantile(std::uint64_t word) {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "astroid/core/distributions.hpp"
 #include "astroid/core/math.hpp"
 #include "normal_quantile.hpp"
 #include "poisson_tail.hpp"
@@ -44,12 +45,12 @@ inline double continuous_offset(double fraction, double w, double root, double i
                                  (polynomial(s, kC0) + inverse * (polynomial(s, kC1) + inverse * polynomial(s, kC2)))));
 }
 
-inline double quantile_of_high_word_large(double mean, std::uint32_t high) {
-  const double w = normal::quantile(high);
+/// The count if w, the normal quantile of the high word, decides it; else kUndecided, as for every mean that is small
+/// or out of range. Without branches.
+inline double quantile_of_normal(double mean, double w, std::uint32_t high) {
   const double root = det::sqrt(mean);
   const double inverse = 1.0 / mean;
   const double s = w * root * inverse;
-  if (!(s > kLowestS && s < kHighestS)) return kUndecided;
   const double whole = std::floor(mean);
   const double offset = continuous_offset(mean - whole, w, root, inverse);
   const double steps = std::floor(offset);
@@ -58,8 +59,12 @@ inline double quantile_of_high_word_large(double mean, std::uint32_t high) {
   // The low word moves the uniform by up to 2^-33 either way, and x by 2^-33 (dx/dw) / phi(w). With t = tail 2^32,
   // phi(w) >= 0.79 t 2^-32 (Mills' ratio) and dx/dw < 1.33 sqrt(mean), that is less than sqrt(mean) / t for t > 6;
   // smaller t never pass, since distance <= 1/2 and mean >= 10.
-  const double t = static_cast<double>(std::min(high, ~high)) + 0.5;
-  return (distance - bound) * t > root ? whole + steps : kUndecided;
+  const double t = 0x1p31 - std::fabs(static_cast<double>(static_cast<std::int32_t>(high ^ 0x80000000U)) + 0.5);
+  const bool decided =
+      static_cast<bool>(static_cast<int>(mean >= kSmallMean) & static_cast<int>(mean <= kLargestPoissonMean) &
+                        static_cast<int>(s > kLowestS) & static_cast<int>(s < kHighestS) &
+                        static_cast<int>((distance - bound) * t > root));
+  return decided ? whole + steps : kUndecided;
 }
 
 inline double quantile_of_high_word_small(double mean, std::uint32_t high) {
@@ -79,7 +84,8 @@ inline double quantile_of_high_word_small(double mean, std::uint32_t high) {
 
 /// @param mean 0 .. kLargestPoissonMean, not checked.
 inline double quantile_of_high_word(double mean, std::uint32_t high) {
-  return mean >= kSmallMean ? quantile_of_high_word_large(mean, high) : quantile_of_high_word_small(mean, high);
+  return mean >= kSmallMean ? quantile_of_normal(mean, normal::quantile(high), high)
+                            : quantile_of_high_word_small(mean, high);
 }
 
 /// Throws BugError unless 0 <= mean <= kLargestPoissonMean.

@@ -17,12 +17,12 @@ double deviance(double n, double mean) {
   constexpr double kSeriesLimit = 0.5;
   const double v = (n - mean) / (n + mean);
   if (std::fabs(v) > kSeriesLimit) return n * det::log(n / mean) + (mean - n);
-  double sum = (n - mean) * v;
+  double sum = 0.0;
   double power = 2.0 * n * v;
   for (double odd = 3.0;; odd += 2.0) {
     power *= v * v;
     const double next = sum + power / odd;
-    if (next == sum) return sum;
+    if (next == sum) return (n - mean) * v + sum;
     sum = next;
   }
 }
