@@ -42,7 +42,7 @@ void complain(Draft& draft, const Place& place, std::string_view path, ValueErro
 
 /// Parses and stores one value.
 /// @param as_written  the value with its unit, for messages.
-void take_value(const Parameter& parameter, std::string_view text, std::string_view unit, std::string as_written,
+void take_value(const Parameter& parameter, std::string_view text, std::string_view unit, const std::string& as_written,
                 const Place& place, const std::vector<std::filesystem::path>& folders, Draft& draft) {
   ParsedValue parsed = parse_value(parameter, text, unit, folders);
   if (parsed.error) {
