@@ -6,8 +6,9 @@
 
 namespace astroid::configuration {
 
-/// Johnson-Cousins, Tycho, Gaia, and the instrumental bands of PLATO (P), TESS (T) and Kepler (Kp).
-inline constexpr std::array<std::string_view, 13> kPassbands = {"B", "V",  "R",  "I", "J", "B_T", "V_T",
-                                                                "G", "BP", "RP", "P", "T", "Kp"};
+/// Johnson-Cousins with near infrared, Tycho, Gaia, the Sloan bands, and the instrumental bands of PLATO (P),
+/// TESS (T) and Kepler (Kp). Between which of them magnitudes can be converted is the catalogues' business.
+inline constexpr std::array<std::string_view, 19> kPassbands = {
+    "B", "V", "R", "I", "J", "H", "K", "B_T", "V_T", "G", "BP", "RP", "g", "r", "i", "z", "P", "T", "Kp"};
 
 }  // namespace astroid::configuration

@@ -49,6 +49,11 @@ TEST(PlatoPreset, FillsEveryPartOfTheMission) {
   EXPECT_EQ(m.output.images, ImageOutput::kFirst);
 }
 
+TEST(PlatoPreset, FindsTheCatalogueShippedInTheSourceTree) {
+  const auto resolved = read_configuration(plato_preset(), {.overrides = {}, .data_folders = {test::source_dir()}});
+  EXPECT_EQ(resolved.mission.field.catalogue, (test::source_dir() / test::kPlatoCatalogue).string());
+}
+
 TEST(PlatoPreset, NamesTheLineOfEveryParameterItGives) {
   const FolderWithCatalogue data;
   const auto resolved = read_configuration(plato_preset(), {.overrides = {}, .data_folders = {data.path()}});
