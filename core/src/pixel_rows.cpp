@@ -8,6 +8,7 @@
 
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/error.hpp"
+#include "inline_exponential.hpp"
 #include "normal_quantile.hpp"
 #include "philox.hpp"
 #include "poisson_quantile.hpp"
@@ -74,11 +75,23 @@ void for_each_block(const RandomStream& stream, const PixelAddress& address, std
   }
 }
 
-/// Counts that the expansion decides, and otherwise kUndecided.
-void counts_of_large_means(const std::uint32_t* words, const double* mean, std::size_t size, double* out) {
-  DoubleBlock w;
-  normals_of_words(words, size, w.data());
-  for (std::size_t i = 0; i < size; ++i) out[i] = poisson::quantile_of_normal(mean[i], w[i], words[i]);
+/// Counts that the high word decides, and otherwise, also for what is no mean, kUndecided.
+void counts_of_high_words(const std::uint32_t* words, const double* mean, std::size_t size, double* out) {
+  std::size_t large = 0;
+  for (std::size_t i = 0; i < size; ++i) large += mean[i] >= poisson::kSmallMean ? 1U : 0U;
+  if (large > 0) {
+    DoubleBlock w;
+    normals_of_words(words, size, w.data());
+    for (std::size_t i = 0; i < size; ++i) out[i] = poisson::quantile_of_normal(mean[i], w[i], words[i]);
+  } else {
+    std::fill_n(out, size, poisson::kUndecided);
+  }
+  if (large == size) return;
+  DoubleBlock none;
+  for (std::size_t i = 0; i < size; ++i) none[i] = inline_exponential(-mean[i]);  // nonsense for large means, unused
+  for (std::size_t i = 0; i < size; ++i)
+    if (mean[i] >= 0.0 && mean[i] < poisson::kSmallMean)
+      out[i] = poisson::quantile_of_high_word_small(mean[i], none[i], words[i]);
 }
 
 }  // namespace
@@ -104,21 +117,14 @@ void poisson_row(const RandomStream& stream, const PixelAddress& address, std::s
   for_each_block(stream, address, out.size(), [&](std::size_t first, const std::uint32_t* words, std::size_t size) {
     const double* const m = mean.data() + first;
     DoubleBlock counts;
-    if (std::any_of(m, m + size, [](double value) { return value >= poisson::kSmallMean; }))
-      counts_of_large_means(words, m, size, counts.data());
-    else
-      std::fill_n(counts.begin(), size, poisson::kUndecided);
+    counts_of_high_words(words, m, size, counts.data());
     for (std::size_t i = 0; i < size; ++i) {
-      if (counts[i] < 0.0) {
-        const std::int32_t x = address.x0 + static_cast<std::int32_t>(first + i);
-        const auto low = [&] {
-          return philox_words(stream, pixel_counter(low_address, x))[static_cast<std::uint32_t>(x) % kLanes];
-        };
-        poisson::check_mean(m[i]);
-        counts[i] =
-            m[i] < poisson::kSmallMean ? poisson::quantile_of_high_word_small(m[i], words[i]) : poisson::kUndecided;
-        if (counts[i] < 0.0) counts[i] = poisson_quantile(m[i], std::uint64_t{words[i]} << kWordBits | low());
-      }
+      if (counts[i] >= 0.0) continue;
+      poisson::check_mean(m[i]);
+      const std::int32_t x = address.x0 + static_cast<std::int32_t>(first + i);
+      const std::uint32_t low =
+          philox_words(stream, pixel_counter(low_address, x))[static_cast<std::uint32_t>(x) % kLanes];
+      counts[i] = poisson_quantile(m[i], std::uint64_t{words[i]} << kWordBits | low);
     }
     std::copy_n(counts.begin(), size, out.begin() + static_cast<std::ptrdiff_t>(first));
   });

@@ -7,6 +7,7 @@
 
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/math.hpp"
+#include "inline_exponential.hpp"
 #include "normal_quantile.hpp"
 #include "poisson_tail.hpp"
 #include "polynomial.hpp"
@@ -67,11 +68,12 @@ inline double quantile_of_normal(double mean, double w, std::uint32_t high) {
   return decided ? whole + steps : kUndecided;
 }
 
-inline double quantile_of_high_word_small(double mean, std::uint32_t high) {
+/// @param none  P(X = 0) = exp(-mean), from inline_exponential.
+inline double quantile_of_high_word_small(double mean, double none, std::uint32_t high) {
   constexpr double kStep = 0x1p-32;
   constexpr double kMargin = 0x1p-33 + 1e-14;  // half a step of the high word, and the rounding of the sum
   const double u = (static_cast<double>(high) + 0.5) * kStep;
-  double term = det::exp(-mean);
+  double term = none;
   double sum = term;
   double n = 0.0;
   while (u >= sum + kMargin) {
@@ -85,7 +87,7 @@ inline double quantile_of_high_word_small(double mean, std::uint32_t high) {
 /// @param mean 0 .. kLargestPoissonMean, not checked.
 inline double quantile_of_high_word(double mean, std::uint32_t high) {
   return mean >= kSmallMean ? quantile_of_normal(mean, normal::quantile(high), high)
-                            : quantile_of_high_word_small(mean, high);
+                            : quantile_of_high_word_small(mean, inline_exponential(-mean), high);
 }
 
 /// Throws BugError unless 0 <= mean <= kLargestPoissonMean.

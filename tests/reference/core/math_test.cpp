@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "inline_exponential.hpp"
+
 namespace astroid {
 namespace {
 
@@ -96,6 +98,16 @@ TEST(DeterministicMath, KeepsTheSpecialValuesOfC) {
   EXPECT_EQ(det::pow(10.0, 2.0), 100.0);
   EXPECT_TRUE(std::isnan(det::sin(infinity)));
   EXPECT_TRUE(std::isnan(det::exp(std::numeric_limits<double>::quiet_NaN())));
+}
+
+TEST(InlineExponential, IsAccurate) {
+  for (int i = 0; i < kPoints; ++i) {
+    const double x = -10.0 + 11.0 * i / kPoints;
+    const long double exact = std::exp(static_cast<long double>(x));
+    EXPECT_LE(std::fabs(static_cast<long double>(inline_exponential(x)) / exact - 1.0L), 4e-16L) << x;
+  }
+  EXPECT_EQ(inline_exponential(0.0), 1.0);
+  EXPECT_EQ(inline_exponential(-1e-300), 1.0);
 }
 
 // A different processor, emulator or compiler must print the same number. Made with SLEEF 3.5.1 on x86-64.

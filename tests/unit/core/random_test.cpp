@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <fstream>
 #include <set>
@@ -145,6 +146,28 @@ TEST(PoissonRow, UsesTheNextDrawForTheLowWordOnly) {
       ASSERT_EQ(normals[static_cast<std::size_t>(i)], standard_normal(word(3))) << x;
     }
   }
+}
+
+// A different processor, emulator, compiler or vector width must print the same number: a promise, so never update.
+TEST(Rows, HaveTheSameBitsEverywhere) {
+  constexpr std::uint64_t kFnvBasis = 0xcbf29ce484222325U;  // FNV-1a, 64 bits
+  constexpr std::uint64_t kFnvPrime = 0x100000001b3U;
+  std::uint64_t hash = kFnvBasis;
+  const auto add = [&hash](double value) { hash = (hash ^ std::bit_cast<std::uint64_t>(value)) * kFnvPrime; };
+  const RandomStream stream = make_stream(20260101, kEffect, 1, 2);
+  std::vector<double> mean(1000);
+  std::vector<double> out(1000);
+  for (std::size_t i = 0; i < mean.size(); ++i) mean[i] = static_cast<double>(i * i * i * i) / 1024.0;  // 0 .. 1e9
+  for (std::int32_t y = 0; y < 100; ++y) {
+    uniform_row(stream, {-3, y, 1, 0, 0}, out);
+    for (const double value : out) add(value);
+    normal_row(stream, {-3, y, 1, 0, 0}, out);
+    for (const double value : out) add(value);
+    poisson_row(stream, {-3, y, 1, 0, 1}, mean, out);
+    for (const double value : out) add(value);
+    add(normal_at_step(stream, {static_cast<std::uint64_t>(y), 0, 0}));
+  }
+  EXPECT_EQ(hash, 0xc84fcdccd0da8d96U) << std::hex << hash;
 }
 
 TEST(PoissonRow, RefusesWhatHasNoLowWord) {

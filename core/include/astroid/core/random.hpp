@@ -23,7 +23,7 @@ struct RandomStream {
 
 using RandomWords = std::array<std::uint32_t, 4>;
 
-/// @source Steele, Lea & Flood 2014 (SplitMix64 finaliser), applied to each field in turn.
+/// @source Steele2014 (SplitMix64 finaliser), applied to each field in turn; exact definition: docs/random-numbers.md.
 RandomStream make_stream(std::uint64_t seed, StreamId effect, std::uint32_t camera, std::uint32_t detector);
 
 /// The four words at a counter. @source Salmon2011; known-answer vectors of Random123 are tests.
