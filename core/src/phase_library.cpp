@@ -1,0 +1,151 @@
+#include "phase_library.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace astroid::detail {
+
+PhaseLibrary::Extent PhaseLibrary::extent(double lower, double upper) {
+  // A pixel n of a star at phase f in [0, 1) covers n - f - 1/2 … n - f + 1/2.
+  const int first = static_cast<int>(std::floor(lower - 0.5));
+  const int last = static_cast<int>(std::ceil(upper + 1.5));
+  return {first, last - first + 1};
+}
+
+double PhaseLibrary::bytes(const FluxSpline& spline, int phases) {
+  const Extent x = extent(spline.lower().x, spline.upper().x);
+  const Extent y = extent(spline.lower().y, spline.upper().y);
+  return static_cast<double>(sizeof(double)) * phases * phases * x.size * y.size;
+}
+
+PhaseLibrary::PhaseLibrary(const FluxSpline& spline, int phases)
+    : phases_(phases), x_(extent(spline.lower().x, spline.upper().x)), y_(extent(spline.lower().y, spline.upper().y)) {
+  const auto nx = static_cast<std::size_t>(x_.size);
+  const auto ny = static_cast<std::size_t>(y_.size);
+  const auto n = static_cast<std::size_t>(phases);
+  images_.resize(n * n * nx * ny);
+  const double step = 1.0 / phases;
+  const auto lower_edge = [step](const Extent& e, std::size_t i, std::size_t phase) {
+    return e.first + static_cast<double>(i) - 0.5 - static_cast<double>(phase) * step;
+  };
+  std::vector<FluxSpline::Edge> y_edges(n * (ny + 1));
+  for (std::size_t q = 0; q < n; ++q) {
+    for (std::size_t j = 0; j <= ny; ++j) y_edges[q * (ny + 1) + j] = spline.y_edge(lower_edge(y_, j, q));
+  }
+  std::vector<double> rows(spline.coefficient_rows());
+  for (std::size_t p = 0; p < n; ++p) {
+    for (std::size_t i = 0; i < nx; ++i) {
+      spline.integrate_rows(spline.x_edge(lower_edge(x_, i, p)), spline.x_edge(lower_edge(x_, i + 1, p)), rows);
+      for (std::size_t q = 0; q < n; ++q) {
+        const FluxSpline::Edge* edges = &y_edges[q * (ny + 1)];
+        double* column = &images_[(q * n + p) * nx * ny + i];
+        for (std::size_t j = 0; j < ny; ++j) {
+          column[j * nx] = FluxSpline::integrate_column(rows, edges[j], edges[j + 1]);
+        }
+      }
+    }
+  }
+}
+
+const double* PhaseLibrary::image(int phase_x, int phase_y) const {
+  const auto index =
+      static_cast<std::size_t>(phase_y) * static_cast<std::size_t>(phases_) + static_cast<std::size_t>(phase_x);
+  return images_.data() + index * static_cast<std::size_t>(x_.size) * static_cast<std::size_t>(y_.size);
+}
+
+PhaseLibrary::Axis PhaseLibrary::axis(double position) const {
+  const double pixel = std::floor(position);
+  const double s = (position - pixel) * phases_;
+  const double node = std::floor(s);
+  const double t = s - node;
+  Axis axis{.pixel = static_cast<int>(pixel)};
+  constexpr double kHalf = 0.5;
+  constexpr double kSixth = 1.0 / 6.0;
+  const double a = t + 1.0;
+  const double b = t - 1.0;
+  const double c = t - 2.0;
+  const std::array<double, kTaps> weights = {-kSixth * t * b * c, kHalf * a * b * c, -kHalf * a * t * c,
+                                             kSixth * a * t * b};
+  const std::array<double, kTaps> slopes = {-kSixth * (b * c + t * c + t * b), kHalf * (b * c + a * c + a * b),
+                                            -kHalf * (t * c + a * c + a * t), kSixth * (t * b + a * b + a * t)};
+  for (std::size_t k = 0; k < kTaps; ++k) {
+    // Nodes node - 1 … node + 2; one outside 0 … phases - 1 is a phase of a neighbouring pixel.
+    const int phase = static_cast<int>(node) - 1 + static_cast<int>(k);
+    const int shift = phase < 0 ? -1 : phase / phases_;
+    axis.taps[k] = {phase - shift * phases_, shift, weights[k], slopes[k] * phases_};
+  }
+  return axis;
+}
+
+template <class F>
+void PhaseLibrary::for_each_run(const Axis& x, const Axis& y, Rectangle box, F&& f) const {
+  for (const Tap& tap_y : y.taps) {
+    // Detector row of the library's first row for this node.
+    const int row_origin = y.pixel + tap_y.shift + y_.first;
+    const int row_begin = std::max(box.y0, row_origin);
+    const int row_end = std::min(box.y1(), row_origin + y_.size);
+    for (const Tap& tap_x : x.taps) {
+      const int column_origin = x.pixel + tap_x.shift + x_.first;
+      const int column_begin = std::max(box.x0, column_origin);
+      const int count = std::min(box.x1(), column_origin + x_.size) - column_begin;
+      if (count <= 0) continue;
+      const double* from = image(tap_x.phase, tap_y.phase) + (column_begin - column_origin);
+      for (int row = row_begin; row < row_end; ++row) {
+        const auto out = static_cast<std::size_t>(row - box.y0) * static_cast<std::size_t>(box.nx) +
+                         static_cast<std::size_t>(column_begin - box.x0);
+        f(from + static_cast<std::size_t>(row - row_origin) * static_cast<std::size_t>(x_.size), out,
+          static_cast<std::size_t>(count), tap_x, tap_y);
+      }
+    }
+  }
+}
+
+void PhaseLibrary::integrate(PixelPosition star, Rectangle box, std::span<double> fractions) const {
+  std::ranges::fill(fractions, 0.0);
+  for_each_run(axis(star.x), axis(star.y), box,
+               [&](const double* from, std::size_t out, std::size_t count, const Tap& x, const Tap& y) {
+                 const double weight = x.weight * y.weight;
+                 double* to = fractions.data() + out;
+                 for (std::size_t i = 0; i < count; ++i) to[i] += weight * from[i];
+               });
+}
+
+void PhaseLibrary::integrate_gradient(PixelPosition star, Rectangle box, std::span<double> dpdx,
+                                      std::span<double> dpdy) const {
+  std::ranges::fill(dpdx, 0.0);
+  std::ranges::fill(dpdy, 0.0);
+  for_each_run(axis(star.x), axis(star.y), box,
+               [&](const double* from, std::size_t out, std::size_t count, const Tap& x, const Tap& y) {
+                 const double along_x = x.slope * y.weight;
+                 const double along_y = x.weight * y.slope;
+                 for (std::size_t i = 0; i < count; ++i) {
+                   dpdx[out + i] += along_x * from[i];
+                   dpdy[out + i] += along_y * from[i];
+                 }
+               });
+}
+
+double PhaseLibrary::measured_error(const FluxSpline& spline) const {
+  constexpr int kMostPositions = 16;  // per axis, spread over the pixel
+  constexpr double kHalfAperture = 1.5;
+  const int positions = std::min(phases_, kMostPositions);
+  std::array<double, 9> fractions{};
+  double worst = 0.0;
+  for (int j = 0; j < positions; ++j) {
+    for (int i = 0; i < positions; ++i) {
+      const auto midway = [&](int k) { return (k * phases_ / positions + 0.5) / phases_; };
+      const PixelPosition star{midway(i), midway(j)};
+      const int x = star.x < 0.5 ? 0 : 1;
+      const int y = star.y < 0.5 ? 0 : 1;
+      integrate(star, {x - 1, y - 1, 3, 3}, fractions);
+      double flux = 0.0;
+      for (const double fraction : fractions) flux += fraction;
+      const double exact = spline.flux({x - kHalfAperture - star.x, y - kHalfAperture - star.y},
+                                       {x + kHalfAperture - star.x, y + kHalfAperture - star.y});
+      if (exact > 0.0) worst = std::max(worst, std::abs(flux / exact - 1.0));
+    }
+  }
+  return worst;
+}
+
+}  // namespace astroid::detail
