@@ -22,21 +22,24 @@ TEST(ColourRelations, AgreeOnTheSunWithinTheirScatter) {
 }
 
 TEST(ColourRelations, InvertExactly) {
-  for (double colour = -0.3; colour <= 2.0; colour += 0.05) {
+  for (int step = 0; step <= 46; ++step) {
+    const double colour = -0.3 + 0.05 * step;
     EXPECT_NEAR(bv_from_teff(teff_from_bv(colour)), colour, 1e-12);
     EXPECT_NEAR(bp_rp_from_teff(teff_from_bp_rp(colour)), colour, 1e-12);
   }
 }
 
 TEST(ColourRelations, RedderIsCooler) {
-  for (double colour = -0.3; colour < 3.0; colour += 0.01) {
+  for (int step = 0; step < 330; ++step) {
+    const double colour = -0.3 + 0.01 * step;
     EXPECT_GT(teff_from_bp_rp(colour), teff_from_bp_rp(colour + 0.01)) << colour;
     EXPECT_GT(teff_from_bv(colour), teff_from_bv(colour + 0.01)) << colour;
   }
 }
 
 TEST(ColourRelations, CoolerIsBrighterInPThanInV) {
-  for (double teff = 3000.0; teff < 15000.0; teff += 50.0) {
+  for (int step = 0; step < 240; ++step) {
+    const double teff = 3000.0 + 50.0 * step;
     EXPECT_GT(v_minus_p(teff).value(), v_minus_p(teff + 50.0).value()) << teff;
   }
 }

@@ -32,11 +32,21 @@ double chi_squared_z(const std::vector<double>& counts, const std::vector<double
   return (chi_squared - freedom) / std::sqrt(2.0 * freedom);
 }
 
-std::vector<double> law_in_bins(double scale, double slope, double anchor, double from, double to) {
-  std::vector<double> expected;
-  for (double low = from; low < to - kBin / 2.0; low += kBin) {
-    expected.push_back(scale *
-                       (std::pow(10.0, slope * (low + kBin - anchor)) - std::pow(10.0, slope * (low - anchor))));
+/// The law scale 10^(slope (m - anchor)) and the magnitudes between which it is counted.
+struct CountedLaw {
+  double scale;
+  double slope;
+  double anchor;
+  double from;
+  double to;
+};
+
+std::vector<double> law_in_bins(const CountedLaw& law) {
+  const auto brighter = [&](double m) { return law.scale * std::pow(10.0, law.slope * (m - law.anchor)); };
+  std::vector<double> expected(static_cast<std::size_t>(std::lround((law.to - law.from) / kBin)));
+  for (std::size_t bin = 0; bin < expected.size(); ++bin) {
+    const double low = law.from + kBin * static_cast<double>(bin);
+    expected[bin] = brighter(low + kBin) - brighter(low);
   }
   return expected;
 }
@@ -59,7 +69,7 @@ TEST(CountLaw, HoldsInASyntheticFieldOfGivenDensity) {
     request.seed = seed;
     const double scale = 60.0 * square_degrees(request.region);
     const double z = chi_squared_z(counts_of(make_synthetic_field(request), 9.0, 14.0),
-                                   law_in_bins(scale, request.slope, 12.0, 9.0, 14.0));
+                                   law_in_bins({scale, request.slope, 12.0, 9.0, 14.0}));
     RecordProperty("z", std::to_string(z));
     EXPECT_LT(std::abs(z), kLimit) << "seed " << seed;
   }
@@ -73,7 +83,7 @@ TEST(CountLaw, HoldsInASyntheticFieldOfGivenNumber) {
   request.slope = 0.5;
   const double scale = 1e5 / (1.0 - std::pow(10.0, 0.5 * (9.0 - 14.0)));
   const double z =
-      chi_squared_z(counts_of(make_synthetic_field(request), 9.0, 14.0), law_in_bins(scale, 0.5, 14.0, 9.0, 14.0));
+      chi_squared_z(counts_of(make_synthetic_field(request), 9.0, 14.0), law_in_bins({scale, 0.5, 14.0, 9.0, 14.0}));
   EXPECT_LT(std::abs(z), kLimit);
 }
 
@@ -111,7 +121,7 @@ TEST(CountLaw, HoldsInAnExtendedField) {
       {.region = request.region, .complete_to = Magnitude(12.0), .slope = {}, .faint = Magnitude(16.0), .seed = 9});
   EXPECT_NEAR(law.slope, request.slope, 4.0 * law.slope_error);
   const double z = chi_squared_z(counts_of(field, 12.0, 16.0),
-                                 law_in_bins(static_cast<double>(law.stars), law.slope, 12.0, 12.0, 16.0));
+                                 law_in_bins({static_cast<double>(law.stars), law.slope, 12.0, 12.0, 16.0}));
   EXPECT_LT(z, kLimit);
 }
 
