@@ -2,13 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
-#include <csignal>
 #include <filesystem>
 #include <string>
 
 #include "astroid/core/error.hpp"
+#include "astroid/test/file_size_limit.hpp"
 #include "astroid/test/temporary_folder.hpp"
 
 namespace astroid {
@@ -16,26 +15,6 @@ namespace {
 
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-// A process may write files of at most `bytes` while this lives: how a full disk looks from within.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : old_action_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &old_);
-    const rlimit limit{bytes, old_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &old_);
-    std::signal(SIGXFSZ, old_action_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit old_{};
-  void (*old_action_)(int);
-};
 
 TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   const test::TemporaryFolder folder;
@@ -63,7 +42,7 @@ TEST(AtomicFile, ReportsAFullDiskAndKeepsTheOldFile) {
   const test::TemporaryFolder folder;
   const auto path = folder.write("product.txt", "old");
   {
-    const FileSizeLimit limit(1000);
+    const test::FileSizeLimit limit(1000);
     EXPECT_THAT([&] { write_text_file(path, std::string(5000, 'x')); },
                 ThrowsMessage<EnvironmentError>(HasSubstr("product.txt: File too large")));
   }
