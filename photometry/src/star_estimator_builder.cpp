@@ -23,6 +23,10 @@ namespace {
 
 // Central difference for d ln F/dx: its own error is h²/6 F''' ~ 1e-6 of the gradient, rounding adds 1e-13.
 constexpr double kGradientStep = 1e-3;  // px
+// Relative error that the ground's belief on faint neighbours may have: 0.05 mag, the quality of a good catalogue.
+constexpr double kStarLightDoubt = 0.05;
+// A local background with a larger error than this many sigma of one pixel is worse than the known one.
+constexpr double kWorstBackgroundError = 0.5;
 
 PixelPosition nearest_pixel(PixelPosition p) {
   return {std::floor(p.x + 0.5), std::floor(p.y + 0.5)};
@@ -251,14 +255,20 @@ void StarEstimatorBuilder::add_background(const FieldStar& star, StarEstimator& 
   }
 }
 
-bool StarEstimatorBuilder::add_local_background(const FieldStar& star, StarEstimator& estimator) {
+void StarEstimatorBuilder::find_annulus_pixels(const FieldStar& star, const StarEstimator& estimator) {
   const double inner = settings_.annulus_inner.value();
   const double outer = settings_.annulus_outer.value();
-  const double noise_variance = model_.noise.variance();
   const Rectangle& region = layout_.regions()[estimator.region];
   const Rectangle box = intersect(aperture_box(star.position, outer), region);
+  // Only an aperture that reaches into its own annulus shares pixels with it.
+  const bool shared = settings_.method == PhotometryMethod::kAperture
+                          ? settings_.aperture_radius.value() + 1.0 > inner
+                          : static_cast<double>(settings_.mask_window) > inner;
+  const auto in_aperture = [&estimator](std::size_t pixel) {
+    return std::any_of(estimator.terms.begin(), estimator.terms.end(),
+                       [pixel](const EstimatorTerm& term) { return term.pixel == pixel; });
+  };
   found_.clear();
-  double star_light = 0.0;
   for (int y = box.y0; y < box.y1(); ++y) {
     for (int x = box.x0; x < box.x1(); ++x) {
       const double dx = x - star.position.x;
@@ -266,35 +276,43 @@ bool StarEstimatorBuilder::add_local_background(const FieldStar& star, StarEstim
       const double square = dx * dx + dy * dy;
       if (square < inner * inner || square > outer * outer) continue;
       const std::size_t pixel = layout_.index(estimator.region, x, y);
-      const double light = light_.pixels()[pixel];
-      // Little light: below one sigma of the pixel's own noise, so that wrong beliefs on the neighbours hardly matter.
-      if (light * light > noise_variance) continue;
-      found_.push_back(pixel);
-      star_light += light;
+      if (!(shared && in_aperture(pixel))) found_.push_back(pixel);
     }
   }
-  const auto in_aperture = [&estimator](std::size_t pixel) {
-    return std::any_of(estimator.terms.begin(), estimator.terms.end(),
-                       [pixel](const EstimatorTerm& term) { return term.pixel == pixel; });
-  };
-  // Only an aperture that reaches into its own annulus shares pixels with it.
-  if (settings_.method == PhotometryMethod::kAperture ? settings_.aperture_radius.value() + 1.0 > inner
-                                                      : settings_.mask_window > inner) {
-    for (std::size_t k = found_.size(); k-- > 0;) {
-      if (!in_aperture(found_[k])) continue;
-      star_light -= light_.pixels()[found_[k]];
-      found_.erase(found_.begin() + static_cast<std::ptrdiff_t>(k));
-    }
+}
+
+bool StarEstimatorBuilder::add_local_background(const FieldStar& star, StarEstimator& estimator) {
+  find_annulus_pixels(star, estimator);
+  const std::span<const double> light = light_.pixels();
+  std::stable_sort(found_.begin(), found_.end(), [light](std::size_t a, std::size_t b) { return light[a] < light[b]; });
+  // From the darkest pixel on, take as many as make the mean best: noise falls, doubt of the star light rises.
+  const double noise_variance = model_.noise.variance();
+  double star_light = 0.0;
+  double best_error = std::numeric_limits<double>::infinity();
+  double best_light = 0.0;
+  std::size_t best_count = 0;
+  for (std::size_t k = 0; k < found_.size(); ++k) {
+    star_light += light[found_[k]];
+    const auto count = static_cast<double>(k + 1);
+    const double doubt = kStarLightDoubt * star_light / count;
+    const double error = (star_light / count + noise_variance) / count + doubt * doubt;
+    if (k + 1 < kFewestBackgroundPixels || error >= best_error) continue;
+    best_error = error;
+    best_light = star_light;
+    best_count = k + 1;
   }
-  if (found_.size() < kFewestBackgroundPixels) return false;
-  const auto count = static_cast<double>(found_.size());
+  const double worst = kWorstBackgroundError * kWorstBackgroundError * noise_variance;
+  if (best_count == 0 || (best_error > worst && noise_variance > 0.0)) return false;
+  found_.resize(best_count);
+  std::sort(found_.begin(), found_.end());
+  const auto count = static_cast<double>(best_count);
   double weight_sum = 0.0;
   for (const EstimatorTerm& term : estimator.terms) weight_sum += static_cast<double>(term.weight);
   const auto weight = static_cast<float>(-weight_sum / count);
   for (const std::size_t pixel : found_) estimator.terms.push_back({static_cast<std::uint32_t>(pixel), weight});
-  estimator.offset = -weight_sum * star_light / count;
+  estimator.offset = -weight_sum * best_light / count;
   estimator.budget.var_background_estimate =
-      (weight_sum / count) * (weight_sum / count) * (count * noise_variance + star_light);
+      (weight_sum / count) * (weight_sum / count) * (count * noise_variance + best_light);
   return true;
 }
 

@@ -35,6 +35,7 @@ class StarEstimatorBuilder {
   void cut_at_edges(const FieldStar& star, const Rectangle& window, StarEstimator& estimator);
   void fill_budget(const Rectangle& window, StarEstimator& estimator);
   void add_background(const FieldStar& star, StarEstimator& estimator);
+  void find_annulus_pixels(const FieldStar& star, const StarEstimator& estimator);
   bool add_local_background(const FieldStar& star, StarEstimator& estimator);
   void fill_gradients(std::size_t star, std::span<const std::size_t> neighbours, StarEstimator& estimator);
 

@@ -103,11 +103,12 @@ struct StarEstimator {
 /// Builds the estimator of every target.
 ///
 /// Neighbours enter with the light they shed on the target's pixels, whether or not they are on the frame. A local
-/// background is the mean of the annulus pixels that carry less star light than one sigma of their own noise; the star
-/// light they are believed to carry is taken out through `offset`. Where fewer than 12 remain, the known background is
-/// used and kNoBackground set. With a mesh the frames come with their background subtracted (background.hpp), and the
-/// estimators have no background term. A target whose centre is not on a pixel of the layout is kOutside; one without
-/// expected light is kNoFlux; both have no terms. Among several regions the one with most of the aperture is read.
+/// background is the mean of annulus pixels; the star light they are believed to carry is taken out through `offset`.
+/// The pixels are the darkest ones, as many as make the error of the mean smallest if that belief is 5 % wrong. With
+/// fewer than 12, or an error above half a sigma of a pixel, the known background is used and kNoBackground set. With a
+/// mesh the frames come with their background subtracted (background.hpp), and the estimators have no background term.
+/// A target whose centre is not on a pixel of the layout is kOutside; one without expected light is kNoFlux; both have
+/// no terms. Among several regions the one with most of the aperture is read.
 ///
 /// @param layout  pixels that the frames will have.
 /// @throws InputError when the settings contradict themselves or the layout.
