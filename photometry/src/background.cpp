@@ -128,8 +128,11 @@ void BackgroundMap::filter_cells(std::vector<double>& value, int side) const {
   for (int j = 0; j < rows; ++j) {
     for (int i = 0; i < columns; ++i) {
       near.clear();
-      for (int b = std::max(0, j - half); b <= std::min(rows - 1, j + half); ++b)
-        for (int a = std::max(0, i - half); a <= std::min(columns - 1, i + half); ++a)
+      // The window shrinks symmetrically at the edges, so that a gradient passes unchanged.
+      const int half_x = std::min({half, i, columns - 1 - i});
+      const int half_y = std::min({half, j, rows - 1 - j});
+      for (int b = j - half_y; b <= j + half_y; ++b)
+        for (int a = i - half_x; a <= i + half_x; ++a)
           near.push_back(given[static_cast<std::size_t>(b) * columns_ + static_cast<std::size_t>(a)]);
       // After filling, either every cell has a value or none has.
       value[static_cast<std::size_t>(j) * columns_ + static_cast<std::size_t>(i)] =

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "astroid/core/math.hpp"
 #include "astroid/photometry/background.hpp"
 
 namespace astroid {
@@ -28,6 +29,22 @@ Moments moments(std::span<const double> values) {
   double squares = 0.0;
   for (const double v : values) squares += (v - mean) * (v - mean);
   return {mean, values.size() > 1 ? std::sqrt(squares / (n - 1.0)) : 0.0};
+}
+
+// What clipping at `clip` sigma of what is left leaves of the scatter of normal values: the s of s = f(clip s), with
+// f(t)² = 1 - 2 t φ(t) / (2 Φ(t) - 1) the variance of a normal distribution cut at ± t. Below √3 sigma clipping would
+// never end, so the last value before is taken.
+double clipped_share(double clip) {
+  constexpr double kLeastClip = 1.8;
+  constexpr int kIterations = 60;
+  const double k = std::max(clip, kLeastClip);
+  double share = 1.0;
+  for (int i = 0; i < kIterations; ++i) {
+    const double t = k * share;
+    const double density = det::exp(-0.5 * t * t) / std::sqrt(2.0 * kPi);
+    share = std::sqrt(1.0 - 2.0 * t * density / det::erf(t / std::sqrt(2.0)));
+  }
+  return share;
 }
 
 }  // namespace
@@ -65,7 +82,7 @@ SkyEstimate clipped_sky(std::vector<double>& values, double clip, bool mode) {
     sky.level = smoothed_median(kept);
     m = moments(kept);
   }
-  sky.rms = m.rms;
+  sky.rms = m.rms / clipped_share(clip);
   sky.pixels = kept.size();
   if (mode && std::abs(m.mean - sky.level) < kModeLimit * m.rms)
     sky.level = kModeMedian * sky.level - kModeMean * m.mean;

@@ -2,7 +2,11 @@
 
 #include <array>
 #include <cstdio>
+#include <fstream>
+#include <sstream>
 #include <stdexcept>
+
+#include "astroid/test/temporary_folder.hpp"
 
 namespace astroid::test {
 
@@ -38,8 +42,16 @@ bool python_has(const std::vector<std::string>& modules) {
 std::string run_python(const std::filesystem::path& script, const std::vector<std::string>& arguments) {
   std::string command = std::string(kPython) + " " + shell_word(script.string());
   for (const std::string& argument : arguments) command += " " + shell_word(argument);
+  // Warnings go to a file of their own: mixed into the output they could fall anywhere.
+  const TemporaryFolder folder;
+  const std::filesystem::path errors = folder.write("errors.txt", "");
   std::string output;
-  if (run(command + " 2>&1", output) != 0) throw std::runtime_error(script.string() + " failed:\n" + output);
+  if (run(command + " 2>" + shell_word(errors.string()), output) != 0) {
+    std::ifstream file(errors);
+    std::ostringstream text;
+    text << file.rdbuf();
+    throw std::runtime_error(script.string() + " failed:\n" + output + text.str());
+  }
   return output;
 }
 

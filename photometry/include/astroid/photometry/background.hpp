@@ -17,7 +17,7 @@ namespace astroid {
 /// Level and scatter of a set of pixel values of which some hold stars.
 struct SkyEstimate {
   double level = 0.0;      ///< NaN if no pixel was left
-  double rms = 0.0;        ///< of one pixel
+  double rms = 0.0;        ///< of one pixel, corrected for the tails that clipping cuts off a normal distribution
   std::size_t pixels = 0;  ///< that were left after clipping
 };
 
@@ -26,7 +26,6 @@ struct SkyEstimate {
 /// @param values  in any order, all finite; sorted by the call.
 /// @param mode    true: 2.5 median - 1.5 mean where the two are within 0.3 sigma, as SExtractor does, which undoes half
 ///                of the bias of faint stars at the price of noise; false: the median.
-/// @accuracy      for normal values rms is 1.5 % low at 3 sigma, the tails being cut.
 /// @source BertinArnouts1996 §7.
 [[nodiscard]] SkyEstimate clipped_sky(std::vector<double>& values, double clip, bool mode);
 

@@ -1,9 +1,11 @@
 // photometry/lightcurves.fits: one file for all stars, written in blocks of exposures as the run goes on.
 //
-// HDU TIME      table: TIME (BJD_TDB - 2457000, d, mid-exposure), CADENCENO
-// HDU STARS     table: ID, MAG, X, Y, REFERENCE (e- per exposure, double), NSR (sigma / REFERENCE of one exposure),
-// FLAGS HDU CAMERA1 … one image per camera: FLUX[star][exposure], float32 relative deviation from REFERENCE HDU
-// COMBINED  the mean of the cameras HDU FLAGS     table: CAMERA, STAR, CADENCENO, FLAGS, only where a flag is set
+// 1 primary    no data; what the run was: CAMERAS, CYCLE, EXPTIME, MJD-BEG, the plan in HISTORY
+// 2 TIME       table: TIME (BJD_TDB - 2457000, d, mid-exposure), CADENCENO
+// 3 STARS      table: ID, MAG, X, Y, REFERENCE (e- per exposure, double), NSR (sigma / REFERENCE of one exposure),
+// FLAGS 4 CAMERA1 …  one image per camera: FLUX[star][exposure], float32 relative deviation from REFERENCE … COMBINED
+// the mean of the cameras; left out where there is only one, which then stands for it … FLAGS      table: CAMERA, STAR,
+// CADENCENO, FLAGS, where a flag is set that STARS does not have
 #pragma once
 
 #include <cstddef>
@@ -22,12 +24,13 @@ struct LightCurveStar {
   double x = 0.0, y = 0.0;
   double reference = 0.0;  ///< e- per exposure
   double nsr_exposure = 0.0;
-  std::uint32_t flags = 0;
+  std::uint32_t flags = 0;  ///< measurement_flag bits that hold for every exposure
 };
 
+/// A flag of one measurement, beyond those that its star has in every exposure.
 struct LightCurveFlag {
-  std::uint32_t camera = 0;
-  std::uint32_t star = 0;
+  std::uint32_t camera = 0;  ///< 1 … cameras
+  std::uint32_t star = 0;    ///< 0-based
   std::int64_t exposure = 0;
   std::uint32_t flags = 0;
 };
@@ -41,7 +44,17 @@ struct LightCurveHeader {
   std::vector<std::string> history;  ///< the plan, line by line
 };
 
-/// Writes lightcurves.fits beside, in blocks; renames on commit(). Not thread-safe.
+/// Mid-exposure of exposure k, seconds since the start of the first: exact in k, never summed up.
+/// @accuracy 1e-7 s over 4.5 years.
+[[nodiscard]] double mid_exposure(const LightCurveHeader& header, std::int64_t exposure);
+
+/// The same as BJD_TDB - 2457000, d. @accuracy 5e-8 s (the last bit of a day number near 5000).
+[[nodiscard]] double mid_exposure_bjd(const LightCurveHeader& header, std::int64_t exposure);
+
+/// Writes lightcurves.fits beside, in blocks; renames on commit(); without it nothing stays behind.
+///
+/// Memory does not grow with the exposures: what is kept is, of several cameras, one block of their mean.
+/// @throws EnvironmentError(path, cause), from every member function.  @thread one thread at a time
 class LightCurveWriter {
  public:
   LightCurveWriter(const std::string& path, const LightCurveHeader& header, std::span<const LightCurveStar> stars);
@@ -51,9 +64,14 @@ class LightCurveWriter {
   LightCurveWriter(LightCurveWriter&&) = delete;
   LightCurveWriter& operator=(LightCurveWriter&&) = delete;
 
-  /// @param deviation  shape (stars, count): relative deviation of exposures first … first+count-1 of one camera.
+  /// Writes exposures first … first+count-1 of one camera. Blocks may come in any order, but one block comes from
+  /// camera 1, 2, … in turn, so that the mean is always added up in the same order.
+  /// @param camera     1 … cameras.
+  /// @param deviation  shape (stars, count): relative deviation from the star's reference; NaN where unmeasurable.
+  /// @throws BugError when a block repeats, does not fit, or skips a camera.
   void write_block(int camera, std::int64_t first, std::size_t count, std::span<const float> deviation);
   void add_flags(std::span<const LightCurveFlag> flags);
+  /// @throws BugError unless every exposure of every camera was written.
   void commit();
 
  private:
@@ -61,17 +79,27 @@ class LightCurveWriter {
   std::unique_ptr<Impl> impl_;
 };
 
+/// The header and stars of a light-curve file.
+struct LightCurveContents {
+  LightCurveHeader header;
+  std::vector<LightCurveStar> stars;
+};
+/// @throws InputError when it is not a light-curve file; EnvironmentError when it cannot be read.
+[[nodiscard]] LightCurveContents read_light_curve_contents(const std::string& path);
+
 /// One light curve read back.
 struct LightCurve {
   LightCurveStar star;
-  std::vector<double> time;  ///< s since start, mid-exposure
-  std::vector<double> flux;  ///< e- per exposure; NaN where flagged unmeasurable
-  std::vector<std::uint32_t> flags;
+  std::vector<double> time;          ///< s since start, mid-exposure
+  std::vector<double> flux;          ///< e- per exposure; NaN where flagged unmeasurable
+  std::vector<std::uint32_t> flags;  ///< with those that the star always has
 };
-/// @throws InputError when the file has no such star or is not a light-curve file.
+/// @param camera  1 … cameras; 0: the mean of all cameras, with the flags of all.
+/// @throws InputError when the file has no such star or camera or is not a light-curve file.
 LightCurve read_light_curve(const std::string& path, const std::string& id, int camera);
 
-/// Writes one star as a file that lightkurve opens (no CREATOR card, TELESCOP = 'ASTROID', TIMESYS TDB).
+/// Writes one star as a file that lightkurve opens (no CREATOR card, TELESCOP = 'ASTROID', TIMESYS TDB): columns TIME,
+/// FLUX and FLUX_ERR (e- per exposure), QUALITY (measurement_flag bits), CADENCENO.
 void export_light_curve(const std::string& path, const LightCurve& curve, const LightCurveHeader& header);
 
 }  // namespace astroid

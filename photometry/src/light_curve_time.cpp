@@ -1,0 +1,21 @@
+#include "astroid/photometry/light_curves.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr double kSecondsPerDay = 86400.0;
+// TIME counts from BJD 2457000 as TESS does; MJD counts from JD 2400000.5.
+constexpr double kMjdOfTimeZero = 2457000.0 - 2400000.5;
+
+}  // namespace
+
+double mid_exposure(const LightCurveHeader& header, std::int64_t exposure) {
+  return static_cast<double>(exposure) * header.cycle + 0.5 * header.exposure_time;
+}
+
+double mid_exposure_bjd(const LightCurveHeader& header, std::int64_t exposure) {
+  return (header.start_mjd - kMjdOfTimeZero) + mid_exposure(header, exposure) / kSecondsPerDay;
+}
+
+}  // namespace astroid

@@ -1,0 +1,223 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <string>
+#include <tuple>
+
+#include "astroid/core/error.hpp"
+#include "astroid/core/fits.hpp"
+#include "astroid/photometry/light_curves.hpp"
+#include "light_curve_cards.hpp"
+
+namespace astroid {
+
+namespace {
+
+// Rows of a table that are held at a time.
+constexpr std::int64_t kRowsAtOnce = 65536;
+
+template <class Value>
+std::vector<Value> column_of(std::span<const LightCurveStar> stars, Value LightCurveStar::*member) {
+  std::vector<Value> values;
+  values.reserve(stars.size());
+  for (const LightCurveStar& star : stars) values.push_back(star.*member);
+  return values;
+}
+
+int longest_id(std::span<const LightCurveStar> stars) {
+  std::size_t longest = 1;
+  for (const LightCurveStar& star : stars) longest = std::max(longest, star.id.size());
+  return static_cast<int>(longest);
+}
+
+}  // namespace
+
+struct LightCurveWriter::Impl {
+  // The sum over cameras of one block, until the last camera has come.
+  struct Block {
+    int next_camera = 1;
+    std::size_t count = 0;
+    std::vector<float> sum;
+    std::vector<std::uint8_t> good;  // cameras with a finite value
+  };
+
+  Impl(const std::string& path, const LightCurveHeader& h, std::span<const LightCurveStar> s)
+      : header(h), stars(static_cast<std::int64_t>(s.size())), writer(path) {
+    ASTROID_CHECK_LE(1, header.cameras);
+    ASTROID_CHECK_LE(header.cameras, std::numeric_limits<std::uint8_t>::max());
+    ASTROID_CHECK_LE(0, header.exposures);
+    written.assign(static_cast<std::size_t>(header.cameras), 0);
+    begin_primary();
+    write_times();
+    write_stars(s);
+    for (int camera = 1; camera <= header.cameras; ++camera)
+      images.push_back(begin_image("CAMERA" + std::to_string(camera)));
+    if (header.cameras > 1) combined = begin_image("COMBINED");
+  }
+
+  void begin_primary() {
+    writer.begin_image(FitsNumber::kUnsigned8, {});
+    writer.cards(detail::time_cards());
+    writer.card({"CAMERAS", header.cameras, "number of cameras"});
+    writer.card({"EXPOSURE", header.exposures, "number of exposures"});
+    writer.card({"STARS", stars, "number of stars"});
+    writer.card({"CYCLE", header.cycle, "[s] from exposure to exposure"});
+    writer.card({"EXPTIME", header.exposure_time, "[s] exposure time"});
+    writer.card({"MJD-BEG", header.start_mjd, "[d] TDB, start of the first exposure"});
+    for (const std::string& line : header.history) writer.history(line);
+  }
+
+  void write_times() {
+    writer.begin_table({{"TIME", FitsNumber::kFloat64, "d"}, {"CADENCENO", FitsNumber::kInt64}}, "TIME",
+                       header.exposures);
+    writer.cards(detail::time_cards());
+    std::vector<double> time;
+    std::vector<std::int64_t> cadence;
+    for (std::int64_t first = 0; first < header.exposures; first += kRowsAtOnce) {
+      time.clear();
+      cadence.clear();
+      for (std::int64_t k = first; k < std::min(first + kRowsAtOnce, header.exposures); ++k) {
+        time.push_back(mid_exposure_bjd(header, k));
+        cadence.push_back(k);
+      }
+      writer.write_column(0, first, time);
+      writer.write_column(1, first, cadence);
+    }
+  }
+
+  void write_stars(std::span<const LightCurveStar> s) {
+    writer.begin_table({{"ID", FitsNumber::kFloat64, "", longest_id(s)},
+                        {"MAG", FitsNumber::kFloat64, "mag"},
+                        {"X", FitsNumber::kFloat64, "pixel"},
+                        {"Y", FitsNumber::kFloat64, "pixel"},
+                        {"REFERENCE", FitsNumber::kFloat64, "electron"},
+                        {"NSR", FitsNumber::kFloat64},
+                        {"FLAGS", FitsNumber::kInt32}},
+                       "STARS", stars);
+    if (s.empty()) return;
+    std::vector<std::int32_t> star_flags;
+    star_flags.reserve(s.size());
+    for (const LightCurveStar& star : s) star_flags.push_back(static_cast<std::int32_t>(star.flags));
+    writer.write_column(0, 0, column_of(s, &LightCurveStar::id));
+    writer.write_column(1, 0, column_of(s, &LightCurveStar::magnitude));
+    writer.write_column(2, 0, column_of(s, &LightCurveStar::x));
+    writer.write_column(3, 0, column_of(s, &LightCurveStar::y));
+    writer.write_column(4, 0, column_of(s, &LightCurveStar::reference));
+    writer.write_column(5, 0, column_of(s, &LightCurveStar::nsr_exposure));
+    writer.write_column(6, 0, star_flags);
+  }
+
+  int begin_image(const std::string& name) {
+    // An image without pixels is written as a header alone: FITS knows no axis of length 0 that readers agree on.
+    const bool empty = stars == 0 || header.exposures == 0;
+    const int unit = writer.begin_image(
+        FitsNumber::kFloat32, empty ? std::vector<std::int64_t>{} : std::vector<std::int64_t>{header.exposures, stars},
+        name);
+    writer.card({"BUNIT", "", "relative deviation from REFERENCE"});
+    return unit;
+  }
+
+  void write_image(int unit, std::int64_t first, std::size_t count, std::span<const float> values) {
+    writer.select(unit);
+    for (std::int64_t star = 0; star < stars; ++star)
+      writer.write_pixels(star * header.exposures + first,
+                          values.subspan(static_cast<std::size_t>(star) * count, count));
+  }
+
+  void add_to_mean(int camera, std::int64_t first, std::size_t count, std::span<const float> deviation) {
+    Block& block = blocks[first];
+    ASTROID_CHECK_EQ(camera, block.next_camera);
+    if (camera == 1) {
+      block.count = count;
+      block.sum.assign(deviation.size(), 0.0F);
+      block.good.assign(deviation.size(), 0);
+    }
+    ASTROID_CHECK_EQ(count, block.count);
+    for (std::size_t i = 0; i < deviation.size(); ++i) {
+      if (!std::isfinite(deviation[i])) continue;
+      block.sum[i] += deviation[i];
+      ++block.good[i];
+    }
+    ++block.next_camera;
+    if (camera < header.cameras) return;
+    for (std::size_t i = 0; i < block.sum.size(); ++i)
+      block.sum[i] = block.good[i] > 0 ? block.sum[i] / static_cast<float>(block.good[i])
+                                       : std::numeric_limits<float>::quiet_NaN();
+    write_image(combined, first, count, block.sum);
+    blocks.erase(first);
+  }
+
+  void write_flags() {
+    std::sort(flags.begin(), flags.end(), [](const LightCurveFlag& a, const LightCurveFlag& b) {
+      return std::tie(a.camera, a.star, a.exposure) < std::tie(b.camera, b.star, b.exposure);
+    });
+    writer.begin_table({{"CAMERA", FitsNumber::kInt32},
+                        {"STAR", FitsNumber::kInt32},
+                        {"CADENCENO", FitsNumber::kInt64},
+                        {"FLAGS", FitsNumber::kInt32}},
+                       "FLAGS", static_cast<std::int64_t>(flags.size()));
+    for (std::size_t first = 0; first < flags.size(); first += static_cast<std::size_t>(kRowsAtOnce)) {
+      const std::size_t last = std::min(flags.size(), first + static_cast<std::size_t>(kRowsAtOnce));
+      std::vector<std::int32_t> camera;
+      std::vector<std::int32_t> star;
+      std::vector<std::int64_t> exposure;
+      std::vector<std::int32_t> bits;
+      for (std::size_t i = first; i < last; ++i) {
+        camera.push_back(static_cast<std::int32_t>(flags[i].camera));
+        star.push_back(static_cast<std::int32_t>(flags[i].star));
+        exposure.push_back(flags[i].exposure);
+        bits.push_back(static_cast<std::int32_t>(flags[i].flags));
+      }
+      const auto row = static_cast<std::int64_t>(first);
+      writer.write_column(0, row, camera);
+      writer.write_column(1, row, star);
+      writer.write_column(2, row, exposure);
+      writer.write_column(3, row, bits);
+    }
+  }
+
+  LightCurveHeader header;
+  std::int64_t stars;
+  FitsWriter writer;
+  std::vector<int> images;  // unit of each camera
+  int combined = 0;
+  std::vector<std::int64_t> written;  // exposures of each camera
+  std::map<std::int64_t, Block> blocks;
+  std::vector<LightCurveFlag> flags;
+};
+
+LightCurveWriter::LightCurveWriter(const std::string& path, const LightCurveHeader& header,
+                                   std::span<const LightCurveStar> stars)
+    : impl_(std::make_unique<Impl>(path, header, stars)) {}
+
+LightCurveWriter::~LightCurveWriter() = default;
+
+void LightCurveWriter::write_block(int camera, std::int64_t first, std::size_t count,
+                                   std::span<const float> deviation) {
+  Impl& impl = *impl_;
+  ASTROID_CHECK_LE(1, camera);
+  ASTROID_CHECK_LE(camera, impl.header.cameras);
+  ASTROID_CHECK_LE(0, first);
+  ASTROID_CHECK_LE(first + static_cast<std::int64_t>(count), impl.header.exposures);
+  ASTROID_CHECK_EQ(deviation.size(), count * static_cast<std::size_t>(impl.stars));
+  if (count == 0) return;
+  std::int64_t& written = impl.written[static_cast<std::size_t>(camera - 1)];
+  written += static_cast<std::int64_t>(count);
+  ASTROID_CHECK_LE(written, impl.header.exposures);
+  if (impl.stars == 0) return;
+  impl.write_image(impl.images[static_cast<std::size_t>(camera - 1)], first, count, deviation);
+  if (impl.header.cameras > 1) impl.add_to_mean(camera, first, count, deviation);
+}
+
+void LightCurveWriter::add_flags(std::span<const LightCurveFlag> flags) {
+  impl_->flags.insert(impl_->flags.end(), flags.begin(), flags.end());
+}
+
+void LightCurveWriter::commit() {
+  for (const std::int64_t written : impl_->written) ASTROID_CHECK_EQ(written, impl_->header.exposures);
+  impl_->write_flags();
+  impl_->writer.commit();
+}
+
+}  // namespace astroid
