@@ -19,7 +19,7 @@ double poisson_mode_probability(double mean) {
   constexpr double kDirect = 20.0;  // up to here the factorial itself, beyond Stirling's series is good to 1e-17
   if (n < kDirect) {
     double p = det::exp(-mean);
-    for (double k = 1.0; k <= n; k += 1.0) p *= mean / k;
+    for (int k = 1; k <= static_cast<int>(n); ++k) p *= mean / k;
     return p;
   }
   const double excess = mean - n;

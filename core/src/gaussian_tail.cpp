@@ -11,11 +11,9 @@ constexpr long double kErfcOfSix = 2.15197367124989131165933503991873846e-17L;
 constexpr long double kExpOfMinusThirtySix = 2.31952283024356938831226360973808004e-16L;
 constexpr long double kTwoOverRootPi = 1.12837916709551257389615890312154517L;
 
-// Taylor coefficients at t of y = erfc, from y'' = -2 t y'.
-std::array<long double, kLongTerms> expansion(long double t, long double value, long double slope) {
-  std::array<long double, kLongTerms> c{};
-  c[0] = value;
-  c[1] = slope;
+// Taylor coefficients at t of y = erfc, from y'' = -2 t y' and the first two, y and y'.
+std::array<long double, kLongTerms> expansion(long double t, const std::array<long double, 2>& start) {
+  std::array<long double, kLongTerms> c{start[0], start[1]};
   for (std::size_t n = 0; n + 2 < kLongTerms; ++n) {
     const auto k = static_cast<long double>(n);
     c[n + 2] = -2.0L * (t * (k + 1.0L) * c[n + 1] + k * c[n]) / ((k + 2.0L) * (k + 1.0L));
@@ -47,7 +45,7 @@ ErfcTable::ErfcTable() {
   const long double step = -static_cast<long double>(kSpacing);
   for (std::size_t node = kNodes; node-- > 0;) {
     const long double t = static_cast<long double>(node) * static_cast<long double>(kSpacing);
-    const auto c = expansion(t, value, slope);
+    const auto c = expansion(t, {value, slope});
     for (std::size_t n = 0; n < kTerms; ++n) nodes_[node][n] = static_cast<double>(c[n]);
     value = 0.0L;
     slope = 0.0L;

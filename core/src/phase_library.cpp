@@ -133,7 +133,10 @@ double PhaseLibrary::measured_error(const FluxSpline& spline) const {
   double worst = 0.0;
   for (int j = 0; j < positions; ++j) {
     for (int i = 0; i < positions; ++i) {
-      const auto midway = [&](int k) { return (k * phases_ / positions + 0.5) / phases_; };
+      const auto midway = [&](int k) {
+        const int phase = k * phases_ / positions;
+        return (phase + 0.5) / phases_;
+      };
       const PixelPosition star{midway(i), midway(j)};
       const int x = star.x < 0.5 ? 0 : 1;
       const int y = star.y < 0.5 ? 0 : 1;

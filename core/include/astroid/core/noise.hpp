@@ -40,7 +40,7 @@ double ccd_equation_snr(const CcdEquation& terms);
 /// @param weights        shape (pixels); a binary mask has 0 and 1. Invariant under a common factor.
 /// @returns              relative; +inf when the weighted target is not positive.
 /// @valid                independent pixels and exposures; jitter, flat-field errors and drift are not in it.
-/// @source Marchiori2019 Eq. 11.
+/// @source Marchiori2019 Eq. 11; GutierrezCanales2026 Eq. 2.
 double nsr_exposure(std::span<const double> target, std::span<const double> total, std::span<const double> weights,
                     const PixelNoise& noise);
 

@@ -1,0 +1,106 @@
+// Time per star of the PSF renderers and of choosing a mask.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <vector>
+
+#include "astroid/core/noise.hpp"
+#include "astroid/core/psf.hpp"
+
+namespace astroid {
+namespace {
+
+constexpr double kSigma = 0.6;  // px
+
+// Stars that meet every sub-pixel phase.
+PixelPosition star(int k) {
+  constexpr double kGolden = 0.6180339887498949;
+  constexpr double kPlastic = 0.7548776662466927;
+  return {100.0 + std::fmod(k * kGolden, 1.0), 100.0 + std::fmod(k * kPlastic, 1.0)};
+}
+
+Rectangle box_of(int side) {
+  return {100 - side / 2, 100 - side / 2, side, side};
+}
+
+template <class Render>
+void each_star(benchmark::State& state, Render&& render) {
+  const Rectangle box = box_of(static_cast<int>(state.range(0)));
+  int k = 0;
+  while (state.KeepRunning()) {
+    render(star(k), box);
+    k = (k + 1) % 1000;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+
+void BM_GaussianStamp(benchmark::State& state) {
+  const auto psf = make_gaussian_psf(kSigma);
+  std::vector<double> p(box_of(static_cast<int>(state.range(0))).size());
+  each_star(state, [&](PixelPosition at, Rectangle box) {
+    psf->integrate(at, box, p);
+    benchmark::DoNotOptimize(p.data());
+    benchmark::ClobberMemory();
+  });
+}
+BENCHMARK(BM_GaussianStamp)->Arg(6)->Arg(11)->Arg(21);
+
+void BM_GaussianGradient(benchmark::State& state) {
+  const auto psf = make_gaussian_psf(kSigma);
+  std::vector<double> x(box_of(static_cast<int>(state.range(0))).size());
+  std::vector<double> y(x.size());
+  each_star(state, [&](PixelPosition at, Rectangle box) {
+    psf->integrate_gradient(at, box, x, y);
+    benchmark::DoNotOptimize(x.data());
+    benchmark::ClobberMemory();
+  });
+}
+BENCHMARK(BM_GaussianGradient)->Arg(6)->Arg(11);
+
+// A Moffat profile: not separable, with wings.
+PsfTable moffat_table() {
+  constexpr int kSamplesPerPixel = 16;
+  constexpr int kHalfWidth = 8;  // px
+  const int n = 2 * kHalfWidth * kSamplesPerPixel;
+  PsfTable table;
+  table.samples = Image<double, unit::Relative>(n, n);
+  table.samples_per_pixel = kSamplesPerPixel;
+  table.centre_x = table.centre_y = 0.5 * (n - 1);
+  for (int y = 0; y < n; ++y) {
+    for (int x = 0; x < n; ++x) {
+      const double r = std::hypot(x - table.centre_x, y - table.centre_y) / kSamplesPerPixel;
+      table.samples.at(x, y) = std::pow(1.0 + r * r, -2.5);
+    }
+  }
+  return table;
+}
+
+void BM_TableStamp(benchmark::State& state) {
+  const auto psf = make_prf_psf(moffat_table(), 1e-6);
+  std::vector<double> p(box_of(static_cast<int>(state.range(0))).size());
+  each_star(state, [&](PixelPosition at, Rectangle box) {
+    psf->integrate(at, box, p);
+    benchmark::DoNotOptimize(p.data());
+    benchmark::ClobberMemory();
+  });
+}
+BENCHMARK(BM_TableStamp)->Arg(6)->Arg(11)->Arg(21);
+
+void BM_TableLibrary(benchmark::State& state) {
+  const PsfTable table = moffat_table();
+  while (state.KeepRunning()) benchmark::DoNotOptimize(make_prf_psf(table, 1e-6));
+}
+BENCHMARK(BM_TableLibrary)->Unit(benchmark::kMillisecond);
+
+void BM_OptimalMask(benchmark::State& state) {
+  const Rectangle box = box_of(6);
+  std::vector<double> target(box.size());
+  make_gaussian_psf(kSigma)->integrate(star(7), box, target);
+  for (double& e : target) e *= 1e5;
+  const PixelNoise noise{.background = 945.0, .readout = 50.2, .quantisation = 7.2};
+  while (state.KeepRunning()) benchmark::DoNotOptimize(optimal_binary_mask(target, target, noise));
+}
+BENCHMARK(BM_OptimalMask);
+
+}  // namespace
+}  // namespace astroid
