@@ -31,7 +31,7 @@ struct Bounds {
 };
 
 bool is_missing(std::string_view text) {
-  constexpr std::array<std::string_view, 9> kMarks{"", "null", "NULL", "Null", "--", "N/A", "n/a", "None", "masked"};
+  constexpr std::array<std::string_view, 11> kMarks{"", "nan", "NaN", "null", "NULL", "Null", "--", "N/A", "n/a", "None", "masked"};
   for (const std::string_view mark : kMarks) {
     if (text == mark) return true;
   }
@@ -176,7 +176,7 @@ void check_stated_units(const CatalogueTable& table, const CatalogueColumns& col
 }  // namespace
 
 StarCatalogue read_catalogue(const std::filesystem::path& path, const CatalogueOptions& options) {
-  const std::unique_ptr<CatalogueTable> table = read_text_table(path);
+  const std::unique_ptr<CatalogueTable> table = read_catalogue_table(path);
   ProblemList problems(table->file(), options.most_problems);
   if (table->rows() == 0) {
     problems.add({.file = table->file(),

@@ -42,5 +42,8 @@ class CatalogueTable {
 };
 
 [[nodiscard]] std::unique_ptr<CatalogueTable> read_text_table(const std::filesystem::path& path);
+[[nodiscard]] std::unique_ptr<CatalogueTable> read_fits_table(const std::filesystem::path& path);
+/// Whichever of the two the file is, by its first bytes.
+[[nodiscard]] std::unique_ptr<CatalogueTable> read_catalogue_table(const std::filesystem::path& path);
 
 }  // namespace astroid
