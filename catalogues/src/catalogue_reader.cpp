@@ -31,7 +31,8 @@ struct Bounds {
 };
 
 bool is_missing(std::string_view text) {
-  constexpr std::array<std::string_view, 11> kMarks{"", "nan", "NaN", "null", "NULL", "Null", "--", "N/A", "n/a", "None", "masked"};
+  constexpr std::array<std::string_view, 11> kMarks{"",   "nan", "NaN", "null", "NULL",  "Null",
+                                                    "--", "N/A", "n/a", "None", "masked"};
   for (const std::string_view mark : kMarks) {
     if (text == mark) return true;
   }

@@ -33,7 +33,7 @@ struct Table {
 };
 
 std::filesystem::path write_table(const test::TemporaryFolder& folder, const Table& table) {
-  const std::filesystem::path path = folder.path() / "stars.fits";
+  std::filesystem::path path = folder.path() / "stars.fits";
   FitsWriter writer(path);
   writer.begin_table({{.name = "ID", .number = FitsNumber::kInt64},
                       {.name = "RAJ2000", .number = FitsNumber::kFloat64, .unit = table.unit},

@@ -21,7 +21,7 @@ class Quantity {
   friend constexpr Quantity operator*(double s, Quantity a) { return Quantity(s * a.value_); }
   friend constexpr Quantity operator/(Quantity a, double s) { return Quantity(a.value_ / s); }
   friend constexpr double operator/(Quantity a, Quantity b) { return a.value_ / b.value_; }
-  friend constexpr auto operator<=>(Quantity, Quantity) = default;
+  friend constexpr auto operator<=>(Quantity, Quantity) = default;  // NOLINT(modernize-use-nullptr): not a pointer
 
  private:
   double value_ = 0.0;
@@ -88,7 +88,7 @@ class Magnitude {
   friend constexpr DeltaMag operator-(Magnitude a, Magnitude b) { return DeltaMag(a.value_ - b.value_); }
   friend constexpr Magnitude operator+(Magnitude a, DeltaMag d) { return Magnitude(a.value_ + d.value()); }
   friend constexpr Magnitude operator-(Magnitude a, DeltaMag d) { return Magnitude(a.value_ - d.value()); }
-  friend constexpr auto operator<=>(Magnitude, Magnitude) = default;
+  friend constexpr auto operator<=>(Magnitude, Magnitude) = default;  // NOLINT(modernize-use-nullptr): not a pointer
 
  private:
   double value_ = 0.0;
