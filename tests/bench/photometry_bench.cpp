@@ -1,0 +1,80 @@
+// Time of photometry in a crowded field like the reference one: 32,240 stars on 480 × 480 px.
+#include <benchmark/benchmark.h>
+
+#include "astroid/photometry/background.hpp"
+#include "astroid/photometry/estimator.hpp"
+#include "astroid/test/ground_scene.hpp"
+
+namespace astroid {
+namespace {
+
+constexpr int kSide = 480;
+constexpr std::uint32_t kStars = 32240;
+
+// Star counts that grow 2.5-fold per magnitude down to P = 15, at random places.
+const test::GroundScene& crowded_field() {
+  static const test::GroundScene scene = [] {
+    test::GroundScene s;
+    s.psf = make_gaussian_psf(0.6);
+    s.noise = {945.0, 50.2, 7.2};
+    s.gain = Gain(25.0);
+    const test::TestNoise noise(1);
+    constexpr double kFaintest = 3717.0;  // e- in 21 s of a star of P = 15
+    for (std::uint32_t i = 0; i < kStars; ++i)
+      s.add_target({kSide * noise.uniform(0, i), kSide * noise.uniform(1, i)}, kFaintest / noise.uniform(2, i));
+    return s;
+  }();
+  return scene;
+}
+
+PhotometrySettings settings_of(const benchmark::State& state) {
+  PhotometrySettings settings;
+  settings.method = static_cast<PhotometryMethod>(state.range(0));
+  settings.background = static_cast<BackgroundMethod>(state.range(1));
+  return settings;
+}
+
+void methods(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"method", "background"});
+  for (const PhotometryMethod method :
+       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted})
+    for (const BackgroundMethod background : {BackgroundMethod::kKnown, BackgroundMethod::kLocal})
+      b->Args({static_cast<long>(method), static_cast<long>(background)});
+}
+
+void BM_BuildEstimators(benchmark::State& state) {
+  const auto layout = test::full_frame(kSide, kSide);
+  for (auto _ : state) benchmark::DoNotOptimize(build_estimators(*layout, crowded_field().model(), settings_of(state)));
+  state.SetItemsProcessed(state.iterations() * kStars);
+}
+BENCHMARK(BM_BuildEstimators)->Apply(methods)->Unit(benchmark::kMillisecond);
+
+void BM_ApplyEstimators(benchmark::State& state) {
+  const auto layout = test::full_frame(kSide, kSide);
+  const test::GroundScene& scene = crowded_field();
+  const EstimatorSet set(build_estimators(*layout, scene.model(), settings_of(state)), scene.gain, scene.bias);
+  Frame frame = test::empty_frame(layout, scene.gain, scene.bias);
+  frame.flags.pixels()[0] = pixel_flag::kFullWell;  // a saturated star somewhere, as in any real field
+  std::vector<double> flux(set.size());
+  std::vector<std::uint32_t> flags(set.size());
+  for (auto _ : state) {
+    set.apply(frame, flux, flags);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * kStars);
+}
+BENCHMARK(BM_ApplyEstimators)->Apply(methods)->Unit(benchmark::kMicrosecond);
+
+void BM_BackgroundMesh(benchmark::State& state) {
+  const auto layout = test::full_frame(1024, 1024);
+  Frame frame = test::empty_frame(layout);
+  const test::TestNoise noise(2);
+  for (std::uint32_t i = 0; i < layout->size(); ++i)
+    frame.pixels.pixels()[i] = static_cast<float>(1000.0 + 5.0 * noise.normal(0, i));
+  for (auto _ : state) benchmark::DoNotOptimize(BackgroundMap(frame, 0, {}).median_level());
+  state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(layout->size()));
+}
+BENCHMARK(BM_BackgroundMesh)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace astroid
