@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/statistics/sums.hpp"
 
 namespace astroid {
 
@@ -14,7 +15,7 @@ namespace {
 
 constexpr double kLowerTail = 0.025;                   // of a 95 % interval
 constexpr double kNormalQuantile = 1.959963984540054;  // of 1 - kLowerTail
-// From here Wilson and Hilferty's cube is good to 1e-6 and never iterates (WilsonHilferty1931).
+// From here Wilson and Hilferty's cube is good to 1e-6, and does not iterate.
 constexpr std::int64_t kManyDegrees = 1000;
 
 double wilson_hilferty(double z, double dof) {
@@ -89,21 +90,15 @@ MedianEstimate median_estimate(std::span<const double> values) {
 }
 
 MeanEstimate mean_estimate(std::span<const double> values) {
-  MeanEstimate out;
-  double mean = 0.0;
-  double m2 = 0.0;
+  RunningMoments moments;
   for (const double v : values) {
-    if (!std::isfinite(v)) continue;
-    ++out.n;
-    const double delta = v - mean;
-    mean += delta / static_cast<double>(out.n);
-    m2 += delta * (v - mean);
+    if (std::isfinite(v)) moments.add(v);
   }
-  if (out.n >= 1) out.value = mean;
-  if (out.n >= 2) {
-    out.scatter = std::sqrt(m2 / static_cast<double>(out.n - 1));
-    out.error = out.scatter / std::sqrt(static_cast<double>(out.n));
-  }
+  MeanEstimate out;
+  out.n = moments.count();
+  out.value = moments.mean();
+  out.scatter = moments.standard_deviation();
+  out.error = out.scatter / std::sqrt(static_cast<double>(out.n));
   return out;
 }
 

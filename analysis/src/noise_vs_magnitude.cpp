@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "astroid/core/statistics/regression.hpp"
 #include "magnitude_bins.hpp"
 
 namespace astroid {
@@ -103,23 +104,20 @@ std::optional<NoiseAtMagnitude> noise_at_magnitude(std::span<const TargetMetrics
   }
   if (static_cast<std::int64_t>(stars.size()) < kStarsForMedian) return std::nullopt;
 
-  const double n = static_cast<double>(stars.size());
-  double mean_mag = 0.0;
-  double mean_log = 0.0;
+  std::vector<double> magnitudes;
+  std::vector<double> logarithms;
+  magnitudes.reserve(stars.size());
+  logarithms.reserve(stars.size());
   for (const TargetMetrics* star : stars) {
-    mean_mag += star->mag / n;
-    mean_log += std::log(star->nsr_1h_ppm) / n;
+    magnitudes.push_back(star->mag);
+    logarithms.push_back(std::log(star->nsr_1h_ppm));
   }
-  double covariance = 0.0;
-  double variance = 0.0;
-  for (const TargetMetrics* star : stars) {
-    covariance += (star->mag - mean_mag) * (std::log(star->nsr_1h_ppm) - mean_log);
-    variance += (star->mag - mean_mag) * (star->mag - mean_mag);
-  }
-  const double slope = variance > 0.0 ? covariance / variance : 0.0;
+  const double fitted = fit_line(magnitudes, logarithms).slope;
+  const double slope = std::isfinite(fitted) ? fitted : 0.0;  // all of one magnitude
 
   const auto at_magnitude = [&](auto noise_of) {
     std::vector<double> logs;
+    logs.reserve(stars.size());
     for (const TargetMetrics* star : stars) {
       logs.push_back(std::log(noise_of(*star)) - slope * (star->mag - magnitude));
     }
@@ -136,7 +134,7 @@ std::optional<NoiseAtMagnitude> noise_at_magnitude(std::span<const TargetMetrics
 }
 
 Requirement plato_requirement(int cameras) {
-  constexpr double kNoise = 50.0;      // ppm in 1 h (§3.8)
+  constexpr double kNoise = 50.0;      // ppm in 1 h
   constexpr double kCameras = 24.0;    // that it is meant for
   constexpr double kMagnitude = 11.0;  // V
   return {"PLATO P1", kMagnitude, kNoise * std::sqrt(kCameras / cameras)};

@@ -75,7 +75,7 @@ PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& m
   out.exposure = std::sqrt(independent + jitter_exposure + prnu_exposure);
   out.bin_common = out.bin.jitter;
   out.bin_simulated = kPpm * std::sqrt((independent / n + prnu_bin) / simulated + jitter_bin);
-  // Within a bin the variance is what the mean of the bin has not taken; n / (n - 1) as F19(a) divides by n - 1.
+  // Within a bin the variance is what the mean of the bin has not taken; n / (n - 1) as the estimator divides by n - 1.
   const double bessel = n > 1.0 ? n / (n - 1.0) : 1.0;
   const double shared = bessel * std::max(0.0, jitter_exposure - jitter_bin);
   const double own = independent + bessel * std::max(0.0, prnu_exposure - prnu_bin);

@@ -26,6 +26,7 @@ int run_gnuplot(const std::filesystem::path& folder, const std::vector<std::stri
   std::vector<std::string> words{"gnuplot"};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> argv;
+  argv.reserve(words.size() + 1);
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);
   posix_spawn_file_actions_t actions;

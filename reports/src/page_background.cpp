@@ -103,6 +103,7 @@ std::string provenance_section(const PageContent& content) {
   const auto& provenance = content.input->provenance;
   if (provenance.empty()) return {};
   std::vector<std::vector<std::string>> rows;
+  rows.reserve(provenance.size());
   for (const auto& [name, value] : provenance) rows.push_back({html::escape(name), html::escape(value)});
   return html::section("provenance", "Provenance",
                        html::table({{"", "", true}, {"", "", true}}, rows) + "<p class=\"note\">" +

@@ -62,20 +62,18 @@ std::span<const Column<NoiseBin>> noise_columns() {
     c.push_back(number("predicted_ppm", "ppm", "median of the predicted noise of one bin in time with all cameras",
                        &NoiseBin::predicted_ppm));
     c.push_back(number("measured_ppm", "ppm",
-                       "median of the measured noise: std of bin means / c4 (F19b), scaled to all cameras",
+                       "median of the measured noise: std of bin means / c4, scaled to all cameras",
                        &NoiseBin::measured_ppm));
-    c.push_back(number("measured_within_ppm", "ppm",
-                       "median of the noise measured within bins (F19a), scaled to all cameras",
+    c.push_back(number("measured_within_ppm", "ppm", "median of the noise measured within bins, scaled to all cameras",
                        &NoiseBin::measured_within_ppm));
     c.push_back(ratio(
-        "ratio",
-        "median of measured / predicted by bin means (F19b), with the simulated cameras, free of the median's bias",
+        "ratio", "median of measured / predicted by bin means, with the simulated cameras, free of the median's bias",
         &NoiseBin::ratio, &MedianEstimate::value));
     c.push_back(ratio("ratio_low", "lower end of its 95 % interval (order statistics)", &NoiseBin::ratio,
                       &MedianEstimate::low));
     c.push_back(ratio("ratio_high", "upper end of its 95 % interval (order statistics)", &NoiseBin::ratio,
                       &MedianEstimate::high));
-    c.push_back(ratio("ratio_within", "median of measured / predicted within bins (F19a)", &NoiseBin::ratio_within,
+    c.push_back(ratio("ratio_within", "median of measured / predicted within bins", &NoiseBin::ratio_within,
                       &MedianEstimate::value));
     c.push_back(ratio("ratio_within_low", "lower end of its 95 % interval (order statistics)", &NoiseBin::ratio_within,
                       &MedianEstimate::low));
@@ -119,7 +117,7 @@ std::span<const Column<RecoveryBin>> recovery_columns() {
                        &RecoveryBin::pull_width));
     c.push_back(
         estimate("flux_bias", "",
-                 "mean of flux_measured / flux_expected - 1, uncontaminated stars; free of the logarithm's bias (F3)",
+                 "mean of flux_measured / flux_expected - 1, uncontaminated stars; free of the logarithm's bias",
                  &RecoveryBin::flux_bias, &E::value));
     c.push_back(estimate("flux_bias_err", "", "its standard error", &RecoveryBin::flux_bias, &E::error));
     return c;
@@ -132,7 +130,7 @@ std::span<const Column<ContaminationRow>> contamination_columns() {
     std::vector<Column<ContaminationRow>> c;
     c.push_back({"id", "", "the target's identifier", [](const ContaminationRow& r) { return Cell(r.id); }});
     c.push_back(number("mag", "mag", "true magnitude of the target", &ContaminationRow::mag));
-    c.push_back(number("spr_tot", "", "neighbours' share of all star light in the aperture, sky excluded (F20)",
+    c.push_back(number("spr_tot", "", "neighbours' share of all star light in the aperture, sky excluded",
                        &ContaminationRow::spr_tot));
     c.push_back(number("delta_mag", "mag", "how much brighter the aperture looks, 2.5 log10(1 - spr_tot)",
                        &ContaminationRow::delta_mag));
@@ -150,7 +148,7 @@ std::span<const Column<ContaminationRow>> contamination_columns() {
       value("dx", "px", "columns from the target", &Contaminant::dx);
       value("dy", "px", "rows from the target", &Contaminant::dy);
       value("electrons", "e-", "electrons per exposure, all of its PSF", &Contaminant::electrons);
-      value("spr", "", "its share of all star light in the target's aperture, SPR_k (F20)", &Contaminant::spr);
+      value("spr", "", "its share of all star light in the target's aperture, SPR_k", &Contaminant::spr);
     }
     return c;
   }();
@@ -172,7 +170,7 @@ std::span<const Column<BudgetRow>> budget_columns() {
                  [](const BudgetRow& r) { return Cell(std::int64_t{r.mask_pixels}); }});
     c.push_back(
         number("enclosed_fraction", "", "share of the flux that the aperture collects", &BudgetRow::enclosed_fraction));
-    c.push_back(number("nsr_exposure", "", "noise-to-signal ratio of one exposure of one camera without jitter (F7)",
+    c.push_back(number("nsr_exposure", "", "noise-to-signal ratio of one exposure of one camera without jitter",
                        &BudgetRow::nsr_exposure));
     c.push_back(number("nsr_1h_ppm", "ppm",
                        "noise of the mean over one bin (Analysis/Bin, 1 h unless set) with all cameras",

@@ -44,12 +44,12 @@ void add_star(std::vector<TargetColumn>& c) {
   c.push_back(number("enclosed_fraction", "", "share of the target's flux that the aperture collects, sum w p",
                      &TargetMetrics::enclosed_fraction));
   c.push_back(number("spr_tot", "",
-                     "stellar pollution ratio: neighbours' share of all star light in the aperture, sky excluded (F20)",
+                     "stellar pollution ratio: neighbours' share of all star light in the aperture, sky excluded",
                      &TargetMetrics::spr_tot));
-  c.push_back(number("crowdsap", "", "target's share of all star light in the aperture, 1 - spr_tot (F22)",
+  c.push_back(number("crowdsap", "", "target's share of all star light in the aperture, 1 - spr_tot",
                      &TargetMetrics::crowdsap));
   c.push_back(
-      number("flfrcsap", "", "target's flux in the aperture / all flux of the target (F22)", &TargetMetrics::flfrcsap));
+      number("flfrcsap", "", "target's flux in the aperture / all flux of the target", &TargetMetrics::flfrcsap));
 }
 
 void add_exposure_noise(std::vector<TargetColumn>& c) {
@@ -70,23 +70,24 @@ void add_hour_noise(std::vector<TargetColumn>& c) {
   const auto low = &NoiseEstimate::low;
   const auto high = &NoiseEstimate::high;
   c.push_back(number("nsr_1h_ppm", "ppm",
-                     "predicted noise of the mean over one bin (Analysis/Bin, 1 h unless set) with all cameras (F8, "
-                     "jitter by its motion left in the mean)",
+                     "predicted noise of the mean over one bin (Analysis/Bin, 1 h unless set) with all cameras: "
+                     "independent terms fall by the root of their number, "
+                     "jitter by the motion that is left in the mean",
                      &TargetMetrics::nsr_1h_ppm));
   c.push_back(estimate(
       "nsr_1h_ppm_measured", "ppm",
-      "the same, measured: standard deviation of the bin means / c4 (F19b), its independent part scaled to all cameras",
+      "the same, measured: standard deviation of the bin means / c4, its independent part scaled to all cameras",
       &TargetMetrics::nsr_1h_scaled, value));
   c.push_back(estimate("nsr_1h_ppm_measured_err", "ppm", "its standard error", &TargetMetrics::nsr_1h_scaled, error));
   c.push_back(estimate("nsr_1h_ppm_within_measured", "ppm",
-                       "measured from the scatter within bins / sqrt(n), each with its c4 (F19a), scaled to all "
+                       "measured from the scatter within bins / sqrt(n), each with its c4, scaled to all "
                        "cameras; blind to noise slower than a bin",
                        &TargetMetrics::nsr_1h_within_scaled, value));
   c.push_back(estimate("nsr_1h_ppm_within_measured_err", "ppm", "its standard error",
                        &TargetMetrics::nsr_1h_within_scaled, error));
   c.push_back(predicted("nsr_1h_simulated_ppm", "predicted with the cameras that were simulated",
                         &PredictedNoise::bin_simulated));
-  c.push_back(estimate("nsr_1h_simulated_ppm_measured", "ppm", "measured with the cameras that were simulated (F19b)",
+  c.push_back(estimate("nsr_1h_simulated_ppm_measured", "ppm", "measured with the cameras that were simulated",
                        &TargetMetrics::nsr_1h_measured, value));
   c.push_back(estimate("nsr_1h_simulated_ppm_measured_err", "ppm", "its standard error",
                        &TargetMetrics::nsr_1h_measured, error));
@@ -97,7 +98,7 @@ void add_hour_noise(std::vector<TargetColumn>& c) {
   c.push_back(predicted("nsr_1h_simulated_within_ppm",
                         "what the scatter within bins should give with the cameras that were simulated",
                         &PredictedNoise::bin_within));
-  c.push_back(estimate("nsr_1h_simulated_within_ppm_measured", "ppm", "what it gave (F19a)",
+  c.push_back(estimate("nsr_1h_simulated_within_ppm_measured", "ppm", "what it gave",
                        &TargetMetrics::nsr_1h_within_measured, value));
   c.push_back(estimate("nsr_1h_simulated_within_ppm_measured_err", "ppm", "its standard error",
                        &TargetMetrics::nsr_1h_within_measured, error));
@@ -113,11 +114,11 @@ void add_causes(std::vector<TargetColumn>& c) {
   c.push_back(cause("quantisation", "part of nsr_1h_ppm: rounding by the ADC", &NoiseByCause::quantisation));
   c.push_back(cause("background_estimate", "part of nsr_1h_ppm: noise of the local background that is subtracted",
                     &NoiseByCause::background_estimate));
-  c.push_back(cause(
-      "jitter",
-      "part of nsr_1h_ppm: pointing jitter moving light across the edge of the aperture; common to all cameras (F25)",
-      &NoiseByCause::jitter));
-  c.push_back(cause("prnu_jitter", "part of nsr_1h_ppm: pointing jitter moving the star over unequal pixels (F27)",
+  c.push_back(
+      cause("jitter",
+            "part of nsr_1h_ppm: pointing jitter moving light across the edge of the aperture; common to all cameras",
+            &NoiseByCause::jitter));
+  c.push_back(cause("prnu_jitter", "part of nsr_1h_ppm: pointing jitter moving the star over unequal pixels",
                     &NoiseByCause::prnu_jitter));
 }
 
@@ -132,8 +133,7 @@ void add_recovery(std::vector<TargetColumn>& c) {
                      &TargetMetrics::flux_err));
   c.push_back(number("mag_measured", "mag", "magnitude of flux_measured; nan unless it is positive",
                      &TargetMetrics::mag_measured));
-  c.push_back(
-      number("mag_err", "mag", "its standard error, 1.0857 flux_err / flux_measured (F2)", &TargetMetrics::mag_err));
+  c.push_back(number("mag_err", "mag", "its standard error, 1.0857 flux_err / flux_measured", &TargetMetrics::mag_err));
   c.push_back(number("delta_mag", "mag",
                      "mag_measured - mag = delta_contamination + delta_aperture_loss + delta_residual",
                      &TargetMetrics::delta_mag));
@@ -143,7 +143,7 @@ void add_recovery(std::vector<TargetColumn>& c) {
                               &MagnitudeCauses::aperture_loss));
   c.push_back(magnitude_cause("delta_residual", "what neither explains: saturation, background, calibration, noise",
                               &MagnitudeCauses::residual));
-  c.push_back(number("delta_prnu_rms", "mag", "expected rms of delta_residual by fixed unequal pixels (F28)",
+  c.push_back(number("delta_prnu_rms", "mag", "expected rms of delta_residual by fixed unequal pixels",
                      &TargetMetrics::prnu_magnitude));
   c.push_back({"exposures", "", "exposures in which the star was measured",
                [](const TargetMetrics& t) { return Cell(t.exposures); }});

@@ -1,4 +1,4 @@
-// The analytic budget against the published masks and contamination of a Gaussian star (SCIENCE §3.2, §3.3).
+// The analytic budget against the published masks and contamination of a Gaussian star.
 #include "astroid/analysis/budget.hpp"
 
 #include <gtest/gtest.h>
@@ -85,7 +85,7 @@ TEST(AnalyticBudget, AddsItsCausesInQuadrature) {
 }
 
 TEST(AnalyticBudget, GivesThePublishedNoiseOfPixelGainsUnderJitter) {
-  // F27: 1 % along both axes at the pixel's centre is 14.7 ppm per sample of 0.0025333 px, for the whole PSF.
+  // 1 % along both axes at the pixel's centre is 14.7 ppm per sample of 0.0025333 px, for the whole PSF.
   Mission mission = mask_mission();
   mission.ccd.prnu = 0.01;
   mission.telescope.cameras = 1;

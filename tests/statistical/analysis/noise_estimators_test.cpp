@@ -54,11 +54,9 @@ TEST(NoiseEstimators, AreUnbiasedWithHonestErrorsForWhiteNoise) {
   expect_honest(
       all, kSigma, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.exposure; }, "exposure");
   expect_honest(
-      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_within; },
-      "within bins (F19a)");
+      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_within; }, "within bins");
   expect_honest(
-      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_means; },
-      "bin means (F19b)");
+      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_means; }, "bin means");
 }
 
 TEST(NoiseEstimators, StayUnbiasedWithMissingExposures) {
@@ -72,15 +70,13 @@ TEST(NoiseEstimators, StayUnbiasedWithMissingExposures) {
   }
   const std::vector<SeriesSummary> all = statistics.summaries();
   expect_honest(
-      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_within; },
-      "within bins (F19a)");
+      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_within; }, "within bins");
   expect_honest(
-      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_means; },
-      "bin means (F19b)");
+      all, kSigma / 12.0, [](const SeriesSummary& s) -> const NoiseEstimate& { return s.bin_means; }, "bin means");
 }
 
 TEST(NoiseEstimators, SeeRedNoiseInBinMeansAsTheCovarianceSays) {
-  // Points of an Ornstein-Uhlenbeck process, 250 s, every 25 s: the hourly mean keeps 0.360 of the rms (F25), white
+  // Points of an Ornstein-Uhlenbeck process, 250 s, every 25 s: the hourly mean keeps 0.360 of the rms, white
   // noise would keep 1/12. Within the hour the variance is what the mean has not taken.
   constexpr double kTimescale = 250.0;
   constexpr double kCycle = 25.0;

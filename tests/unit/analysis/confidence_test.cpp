@@ -13,7 +13,7 @@ TEST(Confidence, KnowsTheMeanOfTheSampleDeviation) {
   EXPECT_NEAR(c4(2), std::sqrt(2.0 / 3.14159265358979323846), 1e-14);
   EXPECT_NEAR(c4(3), 0.5 * std::sqrt(3.14159265358979323846), 1e-14);
   EXPECT_NEAR(c4(4), 2.0 * std::sqrt(2.0 / (3.0 * 3.14159265358979323846)), 1e-14);
-  // F19: an hour of 144 exposures, with n - 1 and with n in the denominator.
+  // An hour of 144 exposures, with n - 1 and with n in the denominator.
   EXPECT_NEAR(c4(144), 0.9982533, 5e-8);
   EXPECT_NEAR(c4(144) * std::sqrt(143.0 / 144.0), 0.9947811, 5e-8);
 }

@@ -24,7 +24,7 @@ TruthStar star_of(double magnitude, double electrons) {
   return star;
 }
 
-/// A series with the given relative mean and noise, as F19 would see white noise in 24 hours.
+/// A series with the given relative mean and noise, as the estimators would see white noise in 24 hours.
 SeriesSummary white_series(double mean, double nsr) {
   SeriesSummary series;
   series.exposures = 24 * 144;
@@ -40,7 +40,7 @@ TEST(PredictNoise, FallsWithCamerasAndExposuresWhenNothingMoves) {
   const StarEstimator e = synthetic_estimator(148000.0, 0.0, 9, 0.975);
   const PredictedNoise noise = predict_noise(e, {}, plato_setup());
   EXPECT_DOUBLE_EQ(noise.exposure, e.nsr_exposure);
-  EXPECT_NEAR(noise.bin.total(), kPpm * e.nsr_exposure / (12.0 * std::sqrt(24.0)), 1e-9);  // F8
+  EXPECT_NEAR(noise.bin.total(), kPpm * e.nsr_exposure / (12.0 * std::sqrt(24.0)), 1e-9);
   EXPECT_NEAR(noise.bin_simulated, kPpm * e.nsr_exposure / 12.0, 1e-9);
   EXPECT_NEAR(noise.bin_within, noise.bin_simulated, 1e-9);
   EXPECT_EQ(noise.bin_common, 0.0);
@@ -99,7 +99,7 @@ TEST(PredictNoise, ExpectsWithinBinsWhatTheBinMeansHaveNotTaken) {
 }
 
 TEST(TargetMetrics, SplitTheMagnitudeDifferenceIntoItsCauses) {
-  // Neighbours add a tenth to the target's light in the aperture, the aperture misses a fifth: F22.
+  // Neighbours add a tenth to the target's light in the aperture, the aperture misses a fifth.
   const StarEstimator e = synthetic_estimator(1e5, 8000.0, 9, 0.8);
   TargetMetrics target = predict_target(star_of(11.0, 1e5), e, {}, plato_setup());
   add_measurement(target, white_series(0.0, 3e-3), target.flux_expected, 0, plato_setup());

@@ -19,7 +19,7 @@ struct BudgetRow {
   bool saturated = false;       ///< the brightest pixel with its background is above full well or the ADC's range
   int mask_pixels = 0;
   double enclosed_fraction = 0.0;
-  double nsr_exposure = 0.0;  ///< one exposure, one camera, without jitter (F7)
+  double nsr_exposure = 0.0;  ///< one exposure, one camera, without jitter
   double nsr_1h_ppm = 0.0;    ///< one bin, all cameras
   NoiseByCause causes;        ///< of it, ppm
 };

@@ -21,7 +21,7 @@ struct NoiseEstimate {
 };
 
 /// The mean of the sample standard deviation (n - 1 in the denominator) of n Gaussian values of unit variance.
-/// @param n  >= 2.  @accuracy 1e-14 relative.  @source F19
+/// @param n  >= 2.  @accuracy 1e-14 relative.
 double c4(std::int64_t n);
 
 /// The factors by which a sample standard deviation is multiplied to give the ends of the 95 % interval of sigma, and
@@ -31,7 +31,7 @@ struct DeviationInterval {
   double high = 0.0;
   double median = 1.0;
 };
-/// @param dof  >= 1.  @accuracy 1e-6 relative.
+/// @param dof  >= 1.  @accuracy 1e-6 relative.  @source WilsonHilferty1931 from 1000 on, exact below.
 DeviationInterval deviation_interval(std::int64_t dof);
 
 /// Gives a sample standard deviation `sample` (n - 1 in the denominator) its error and interval.

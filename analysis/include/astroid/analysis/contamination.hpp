@@ -16,7 +16,7 @@ struct Contaminant {
   std::string id;
   double dx = 0.0, dy = 0.0;  ///< from the target, px
   double electrons = 0.0;     ///< per exposure, all of its PSF
-  double spr = 0.0;           ///< SPR_k: its share of all star light in the aperture, sky excluded (F20)
+  double spr = 0.0;           ///< SPR_k: its share of all star light in the aperture, sky excluded
 };
 
 /// A row of analysis/contamination.csv.
@@ -43,13 +43,13 @@ struct TransitSeries {
   double duration = 0.0;  ///< h
   double count = 0.0;     ///< transits observed
 };
-/// Significance of transits on the target itself. @param nsr_1h  relative. @source F21
+/// Significance of transits on the target itself. @param nsr_1h  relative. @source GutierrezCanales2026
 double planet_significance(const TransitSeries& transits, double nsr_1h);
-/// Significance of eclipses on a contaminant with share spr_k. @source F21, Marchiori2019 Eq. 28 corrected
+/// Significance of eclipses on a contaminant with share spr_k. @source Marchiori2019 Eq. 28 corrected
 double contaminant_significance(const TransitSeries& eclipses, double spr_k, double spr_tot, double nsr_1h);
 /// The share from which eclipses on a contaminant look like transits, significance `threshold`.
-/// @source F21, Marchiori2019 Eq. 23 corrected
+/// @source Marchiori2019 Eq. 23 corrected
 double critical_spr(const TransitSeries& eclipses, double spr_tot, double nsr_1h, double threshold);
-inline constexpr double kDetectionThreshold = 7.1;  ///< eta_min of the PLATO pipeline, F21
+inline constexpr double kDetectionThreshold = 7.1;  ///< eta_min of the PLATO pipeline
 
 }  // namespace astroid

@@ -23,7 +23,7 @@ struct StarMotion {
 /// Expected motion of a star by the mission's red-noise jitter, at a place `offset_x`, `offset_y` px from the optical
 /// axis: yaw moves along x, pitch along y, roll around the axis. Exact for an Ornstein-Uhlenbeck process averaged over
 /// exposures and bins. Zero without jitter; for a jitter file the pipeline takes the covariances from the file itself.
-/// @source F25, F29
+/// @source UhlenbeckOrnstein1930
 StarMotion star_motion(const Mission& mission, double offset_x, double offset_y);
 
 }  // namespace astroid

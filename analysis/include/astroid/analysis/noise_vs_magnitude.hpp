@@ -20,16 +20,16 @@ struct NoiseBin {
   std::int64_t stars = 0;
   double predicted_ppm = 0.0;
   NoiseByCause causes;  ///< each the median over the stars: their squares need not add up exactly
-  double measured_ppm = std::numeric_limits<double>::quiet_NaN();         ///< F19(b), scaled to N cameras
-  double measured_within_ppm = std::numeric_limits<double>::quiet_NaN();  ///< F19(a), scaled to N cameras
-  MedianEstimate ratio;                                                   ///< measured / predicted by F19(b), n cameras
-  MedianEstimate ratio_within;                                            ///< measured / predicted by F19(a), n cameras
+  double measured_ppm = std::numeric_limits<double>::quiet_NaN();         ///< by bin means, scaled to N cameras
+  double measured_within_ppm = std::numeric_limits<double>::quiet_NaN();  ///< within bins, scaled to N cameras
+  MedianEstimate ratio;         ///< measured / predicted by bin means, n cameras
+  MedianEstimate ratio_within;  ///< measured / predicted within bins, n cameras
 };
 std::vector<NoiseBin> noise_vs_magnitude(std::span<const TargetMetrics> targets, double width = kMagnitudeBin);
 
-/// Measured / predicted noise of one target by F19(b), or by F19(a) (`within`), with the n simulated cameras. Freed of
-/// the bias that the median of a skewed distribution has, so that a median over stars is 1 when the prediction is
-/// right.
+/// Measured / predicted noise of one target by bin means, or within bins (`within`), with the n simulated cameras.
+/// Freed of the bias that the median of a skewed distribution has, so that a median over stars is 1 when the prediction
+/// is right.
 class NoiseRatio {
  public:
   [[nodiscard]] double operator()(const TargetMetrics& target, bool within);
@@ -45,7 +45,7 @@ struct NoiseSummary {
   double mag_min = std::numeric_limits<double>::quiet_NaN();
   double mag_max = std::numeric_limits<double>::quiet_NaN();
   MedianEstimate ratio;
-  bool within = false;  ///< by F19(a), because there are too few bins for F19(b)
+  bool within = false;  ///< from within bins, because there are too few bin means
 };
 NoiseSummary noise_summary(std::span<const TargetMetrics> targets);
 
@@ -68,7 +68,7 @@ struct Requirement {
   double magnitude = 0.0;  ///< holds for stars this bright or brighter
   double ppm = 0.0;
 };
-/// PLATO's: 50 ppm in 1 h at V = 11 with 24 cameras, as 50 sqrt(24 / cameras). @source §3.8
+/// PLATO's: 50 ppm in 1 h at V = 11 with 24 cameras, as 50 sqrt(24 / cameras). @source GutierrezCanales2026
 Requirement plato_requirement(int cameras);
 
 /// The fraction of clean targets within the requirement's magnitude whose noise (scaled to N cameras) complies.

@@ -17,10 +17,11 @@ struct SeriesSummary {
   double mean = 0.0;           ///< of the relative deviation from the reference flux; NaN without exposures
   NoiseEstimate exposure;      ///< std over all exposures / mean flux: NSR of one exposure
   std::int64_t bins = 0;       ///< bins of which at least half the exposures were measured
-  /// NSR of a bin by F19(a): mean over bins of the std within the bin, each divided by its c4, / sqrt(exposures per
-  /// bin). Blind to noise slower than a bin; unbiased for white noise.
+  /// NSR of a bin from within bins: mean over bins of the std within the bin, each divided by its c4, / sqrt(exposures
+  /// per bin). Blind to noise slower than a bin; unbiased for white noise.
   NoiseEstimate bin_within;
-  /// NSR of a bin by F19(b): std of the bin means, each weighted by its exposures, divided by c4(bins). Sees all noise.
+  /// NSR of a bin from bin means: std of the bin means, each weighted by its exposures, divided by c4(bins). Sees all
+  /// noise.
   NoiseEstimate bin_means;
 };
 
@@ -32,7 +33,7 @@ struct SeriesSummary {
 /// @accuracy    1e-12 relative of a two-pass calculation (test: SeriesStatistics.AgreesWithTwoPasses).
 /// @complexity  O(exposures) time, O(stars) memory.
 /// @thread      different stars may be fed at the same time.
-/// @source      F19, N14
+/// @source      ChanGolubLeVeque1983
 class SeriesStatistics {
  public:
   /// @param exposures_per_bin  >= 2; 144 is an hour at a cycle of 25 s.

@@ -1,4 +1,4 @@
-// Magnitude in against magnitude out. Fluxes are averaged, never magnitudes (F3).
+// Magnitude in against magnitude out. Fluxes are averaged, never magnitudes.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // Everything the analysis says of one target: a row of analysis/targets.csv.
 //
-// Noise is relative to the flux of the target alone in its aperture, predicted and measured alike (F7). A light curve
+// Noise is relative to the flux of the target alone in its aperture, predicted and measured alike. A light curve
 // carries contaminants too, so its relative noise is divided by 1 - SPR before it is compared.
 #pragma once
 
@@ -47,13 +47,13 @@ struct PredictedNoise {
   double exposure = 0.0;           ///< NSR of one exposure of one camera, jitter included
   NoiseByCause bin;                ///< N cameras, ppm
   double bin_simulated = 0.0;      ///< total with the n simulated cameras, ppm: beside what was measured
-  double bin_within = 0.0;         ///< what F19(a) should measure with the n simulated cameras, ppm
+  double bin_within = 0.0;         ///< what the scatter within bins should give with the n simulated cameras, ppm
   double bin_common = 0.0;         ///< the part that cameras share (jitter), ppm
   double bin_within_common = 0.0;  ///< the same of bin_within: jitter faster than a bin
 };
 
-/// Predicts the noise of a target: independent terms fall as 1 / sqrt(cameras * exposures) (F8), jitter by the motion
-/// that is left in the mean and not with cameras (F25), PRNU with jitter by the motion and with cameras (F27).
+/// Predicts the noise of a target: independent terms fall as 1 / sqrt(cameras * exposures), jitter by the motion
+/// that is left in the mean and not with cameras, PRNU with jitter by the motion and with cameras.
 PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup);
 
 /// Differences of magnitude, each a cause: measured - true = contamination + aperture_loss + residual.
@@ -72,13 +72,13 @@ struct TargetMetrics {
   double nsr_exposure = 0.0;  ///< predicted.exposure
   double nsr_1h_ppm = 0.0;    ///< predicted.bin.total()
   PredictedNoise predicted;
-  double spr_tot = 0.0;         ///< F20, sky excluded
-  double crowdsap = 0.0;        ///< 1 - spr_tot (F22)
-  double flfrcsap = 0.0;        ///< target's flux in the aperture / all flux of the target (F22)
+  double spr_tot = 0.0;         ///< stellar pollution ratio, sky excluded
+  double crowdsap = 0.0;        ///< 1 - spr_tot
+  double flfrcsap = 0.0;        ///< target's flux in the aperture / all flux of the target
   double flux_in = 0.0;         ///< e- per exposure, all of the PSF
   double flux_expected = 0.0;   ///< e- per exposure, target and contaminants in the aperture
   std::uint32_t flags = 0;      ///< measurement_flag bits
-  double prnu_magnitude = 0.0;  ///< expected rms error of the magnitude by fixed unequal pixels, n cameras (F28), mag
+  double prnu_magnitude = 0.0;  ///< expected rms error of the magnitude by fixed unequal pixels, n cameras, mag
 
   std::int64_t exposures = 0, missing = 0;
   double flux_measured = std::numeric_limits<double>::quiet_NaN();  ///< mean, e- per exposure, in the aperture
@@ -88,8 +88,8 @@ struct TargetMetrics {
   double delta_mag = std::numeric_limits<double>::quiet_NaN();  ///< mag_measured - mag
   MagnitudeCauses causes;
   NoiseEstimate nsr_exposure_measured;   ///< relative, n cameras
-  NoiseEstimate nsr_1h_within_measured;  ///< ppm, F19(a), n cameras
-  NoiseEstimate nsr_1h_measured;         ///< ppm, F19(b), n cameras
+  NoiseEstimate nsr_1h_within_measured;  ///< ppm, within bins, n cameras
+  NoiseEstimate nsr_1h_measured;         ///< ppm, by bin means, n cameras
   NoiseEstimate nsr_1h_within_scaled;    ///< the same scaled to N cameras
   NoiseEstimate nsr_1h_scaled;
   std::int64_t bins = 0;

@@ -62,7 +62,7 @@ inline StarEstimator synthetic_estimator(double electrons, double contaminant_el
 
 inline StarMotion plato_motion() {
   constexpr double kDisplacement = 0.038 / 15.0;          // px rms
-  constexpr double kInExposure = 0.986, kInHour = 0.360;  // of the rms that is left in the means (F25)
+  constexpr double kInExposure = 0.986, kInHour = 0.360;  // of the rms that is left in the means
   const double exposure = kDisplacement * kDisplacement * kInExposure * kInExposure;
   const double hour = kDisplacement * kDisplacement * kInHour * kInHour;
   return {{exposure, 0.0, exposure}, {hour, 0.0, hour}};
@@ -79,7 +79,7 @@ inline double drawn_deviation(GaussianSeries& gauss, std::int64_t dof) {
 inline std::vector<TargetMetrics> synthetic_targets(const SyntheticField& field) {
   constexpr double kZeroPoint = 20.62;
   constexpr double kExposure = 21.0;   // s
-  constexpr double kSaturation = 7.8;  // mag (F34)
+  constexpr double kSaturation = 7.8;  // mag
   const RunSetup setup = plato_setup();
   const StarMotion motion = plato_motion();
   GaussianSeries gauss(field.seed);
