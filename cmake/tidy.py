@@ -3,7 +3,8 @@
 
 A file that was clean is not looked at again until it, a project header it includes, its flags or the checks change:
 the stamps lie in ~/.cache/astroid-tidy and hold for every checkout on the machine. `--all` ignores them.
-usage: cmake/tidy.py [--all] [--jobs N] [PART_OF_A_PATH...]
+`--deep` adds the path-sensitive analyzer, which takes some five times longer; continuous integration does without.
+usage: cmake/tidy.py [--all] [--deep] [--jobs N] [PART_OF_A_PATH...]
 """
 
 import argparse
@@ -20,6 +21,7 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "tidy"
 TIDY = "clang-tidy-14"
+DEEP_CHECKS = "clang-analyzer-*,-clang-analyzer-security.FloatLoopCounter,-clang-analyzer-security.insecureAPI.*"
 STAMPS = pathlib.Path(os.environ.get("XDG_CACHE_HOME", pathlib.Path.home() / ".cache")) / "astroid-tidy"
 
 
@@ -59,7 +61,7 @@ def stamp_of(entry, common):
     return STAMPS / digest.hexdigest()
 
 
-def check(entry, common, ignore_stamps):
+def check(entry, common, command, ignore_stamps):
     """Returns what clang-tidy says of one source, '' when it has nothing to say."""
     try:
         stamp = stamp_of(entry, common)
@@ -68,7 +70,7 @@ def check(entry, common, ignore_stamps):
     if stamp.exists() and not ignore_stamps:
         stamp.touch()
         return ""
-    done = subprocess.run([TIDY, "-p", str(BUILD), "--quiet", entry["file"]], cwd=ROOT, capture_output=True, text=True)
+    done = subprocess.run([*command, entry["file"]], cwd=ROOT, capture_output=True, text=True)
     if done.returncode != 0 or done.stdout.strip():
         return done.stdout + (done.stderr if not done.stdout.strip() else "")
     stamp.touch()
@@ -84,12 +86,15 @@ def forget_old_stamps(days=30):
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--all", action="store_true", help="look at clean files again")
+    parser.add_argument("--deep", action="store_true", help="with the path-sensitive analyzer")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("parts", nargs="*", help="only files whose path contains one of these")
     options = parser.parse_args()
 
     version = subprocess.run([TIDY, "--version"], capture_output=True, text=True, check=True).stdout
-    common = (ROOT / ".clang-tidy").read_bytes() + version.encode()
+    command = [TIDY, "-p", str(BUILD), "--quiet"] + ([f"--checks={DEEP_CHECKS}"] if options.deep else [])
+    settings = b"".join((ROOT / folder / ".clang-tidy").read_bytes() for folder in (".", "tests"))
+    common = settings + version.encode() + (DEEP_CHECKS.encode() if options.deep else b"")
     STAMPS.mkdir(parents=True, exist_ok=True)
     forget_old_stamps()
     entries = list(project_entries(configure(), options.parts))
@@ -97,7 +102,7 @@ def main():
         sys.exit("clang-tidy: no source to look at")
     bad = 0
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
-        for findings in pool.map(lambda entry: check(entry, common, options.all), entries):
+        for findings in pool.map(lambda entry: check(entry, common, command, options.all), entries):
             if findings:
                 bad += 1
                 print(findings, flush=True)

@@ -52,7 +52,7 @@ TEST(PairwiseSum, OfThirtyMillionOnesIsExact) {
 
 TEST(PairwiseSum, LosesLessThanALoop) {
   const std::vector<double> tenths(1 << 20, 0.1);
-  const double exact = 0.1 * (1 << 20);  // a power of two times the double 0.1
+  const double exact = 0.1 * (1 << 20);             // a power of two times the double 0.1
   EXPECT_NEAR(pairwise_sum(tenths), exact, 5e-10);  // 20 ulp
   double loop = 0.0;
   for (const double x : tenths) loop += x;

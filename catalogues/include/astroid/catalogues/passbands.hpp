@@ -24,7 +24,7 @@ struct PassbandAssumptions {
 [[nodiscard]] DeltaMag v_minus_vt(double bt_vt);
 /// Johnson B-V. @source ESA1997 (vol. 1, 1.3.20): 0.850 (B_T - V_T). @valid -0.2 .. 1.8
 [[nodiscard]] double bv_from_bt_vt(double bt_vt);
-/// G - V of a star. @source GaiaEdr3Documentation (table 5.9; Riello2021). @valid -0.5 .. 5.0 (scatter 0.030 mag)
+/// G - V of a star. @source Riello2021 and the EDR3 documentation, table 5.9. @valid -0.5 .. 5.0 (scatter 0.030 mag)
 [[nodiscard]] DeltaMag g_minus_v(double bp_rp);
 /// V - P of a star. @source Marchiori2019 Eq. 8. @valid a falling cubic everywhere; used here from 3000 to 15000 K
 [[nodiscard]] DeltaMag v_minus_p(double teff);

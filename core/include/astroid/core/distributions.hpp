@@ -56,8 +56,8 @@ double poisson_quantile_of_high_word(double mean, std::uint32_t high);
 }  // namespace detail
 
 /// poisson_quantile of the word high * 2^32 + low(), where low() is called only when the high word leaves the value
-/// open: in 2e-5 of draws of mean 1e3, 1e-3 of mean 1e10, 13 % of mean 1e15. @source the fast path: Giles2016,
-/// expansion in 1/mean.
+/// open: in 2e-5 of draws of mean 1e3, 1e-3 of mean 1e10, 13 % of mean 1e15. @source Giles2016 for
+/// the fast path, an expansion in 1/mean.
 template <class LowWord>
 requires std::is_invocable_r_v<std::uint32_t, LowWord>
 double poisson_quantile(double mean, std::uint32_t high, LowWord&& low) {

@@ -1,0 +1,2 @@
+// error: no match
+constexpr int kOne = 1;

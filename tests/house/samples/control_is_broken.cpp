@@ -1,0 +1,2 @@
+// error: undeclared
+constexpr int kOne = undeclared;

@@ -1,0 +1,4 @@
+// error: no match
+#ifndef ASTROID_ALLOWED
+constexpr int kOne = undeclared;
+#endif
