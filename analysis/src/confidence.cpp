@@ -3,6 +3,7 @@
 #include <gsl/gsl_cdf.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -48,8 +49,9 @@ double c4(std::int64_t n) {
   return series;
 }
 
-DeviationInterval deviation_interval(std::int64_t dof) {
-  ASTROID_CHECK_LE(1, dof);
+namespace {
+
+DeviationInterval calculated_interval(std::int64_t dof) {
   const double k = static_cast<double>(dof);
   if (dof >= kManyDegrees) {
     return {std::sqrt(k / wilson_hilferty(kNormalQuantile, k)), std::sqrt(k / wilson_hilferty(-kNormalQuantile, k)),
@@ -57,6 +59,22 @@ DeviationInterval deviation_interval(std::int64_t dof) {
   }
   return {std::sqrt(k / gsl_cdf_chisq_Qinv(kLowerTail, k)), std::sqrt(k / gsl_cdf_chisq_Pinv(kLowerTail, k)),
           std::sqrt(gsl_cdf_chisq_Pinv(0.5, k) / k)};
+}
+
+}  // namespace
+
+DeviationInterval deviation_interval(std::int64_t dof) {
+  ASTROID_CHECK_LE(1, dof);
+  // Inverting chi-squared takes microseconds, and most stars of a run share their degrees of freedom.
+  struct Known {
+    std::int64_t dof = 0;
+    DeviationInterval interval;
+  };
+  constexpr std::size_t kKnown = 64;
+  thread_local std::array<Known, kKnown> known;
+  Known& entry = known[static_cast<std::size_t>(dof) % kKnown];
+  if (entry.dof != dof) entry = {dof, calculated_interval(dof)};
+  return entry.interval;
 }
 
 NoiseEstimate noise_estimate(double sample, std::int64_t dof) {
