@@ -253,7 +253,8 @@ void find_colour(const CatalogueTable& table, CatalogueColumns& columns) {
   }
 }
 
-CatalogueColumns bare_columns(const CatalogueTable& table, const std::string& stated, ProblemList& problems) {
+CatalogueColumns bare_columns(const CatalogueTable& table, const std::string& stated, bool positions_only,
+                              ProblemList& problems) {
   constexpr std::size_t kBareColumns = 3;  // ra dec mag
   CatalogueColumns columns;
   if (table.columns() != kBareColumns) {
@@ -267,7 +268,7 @@ CatalogueColumns bare_columns(const CatalogueTable& table, const std::string& st
          .suggestion = {}});
     return columns;
   }
-  if (stated.empty()) {
+  if (stated.empty() && !positions_only) {
     problems.add({.file = table.file(),
                   .line = 0,
                   .parameter = "passband",
@@ -288,11 +289,13 @@ CatalogueColumns bare_columns(const CatalogueTable& table, const std::string& st
 
 CatalogueColumns find_columns(const CatalogueTable& table, const CatalogueOptions& options, ProblemList& problems) {
   const std::string stated = options.passband.empty() ? std::string() : canonical_passband(options.passband);
-  if (table.names().empty()) return bare_columns(table, stated, problems);
+  if (table.names().empty()) return bare_columns(table, stated, options.positions_only, problems);
   CatalogueColumns columns;
   find_position(table, columns, problems);
-  find_brightness(table, stated, columns, problems);
-  find_colour(table, columns);
+  if (!options.positions_only) {
+    find_brightness(table, stated, columns, problems);
+    find_colour(table, columns);
+  }
   columns.id = find_first(table, kIdNames);
   columns.teff = find_first(table, kTeffNames);
   constexpr std::array<std::string_view, 3> kProperMotionNames{"pmra", "pm_ra", "pmra_mas"};

@@ -123,6 +123,7 @@ class RowReader {
   }
 
   bool read_brightness(std::size_t row, CatalogueStar& star) {
+    if (options_.positions_only) return true;
     const std::size_t column = *columns_.brightness;
     if (columns_.kind == BrightnessKind::kElectrons) {
       constexpr double kMostElectrons = 1e15;  // per exposure

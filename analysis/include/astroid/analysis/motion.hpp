@@ -1,18 +1,10 @@
 // How much a star moves on the detector, and what of that is left in a mean over time.
 #pragma once
 
+#include "astroid/core/geometry.hpp"
 #include "astroid/core/mission.hpp"
 
 namespace astroid {
-
-/// Covariance of a displacement on the detector, px².
-struct MotionCovariance {
-  double sxx = 0.0;
-  double sxy = 0.0;
-  double syy = 0.0;
-  /// Variance of gx dx + gy dy.
-  [[nodiscard]] double along(double gx, double gy) const { return gx * gx * sxx + 2.0 * gx * gy * sxy + gy * gy * syy; }
-};
 
 /// The motion of one star: of its mean position in an exposure, and of the mean of that over a bin.
 struct StarMotion {

@@ -14,8 +14,10 @@ enum class AngleUnit { kDegrees, kRadians };
 /// What the user states about a catalogue file.
 struct CatalogueOptions {
   /// Passband of the magnitudes. Empty: what the column's name implies (Gmag: G); an error where it implies nothing.
-  std::string passband;
+  std::string passband{};
   AngleUnit unit = AngleUnit::kDegrees;  ///< of right ascension and declination
+  /// Reads ids and positions alone: no brightness column is needed, and none is read.
+  bool positions_only = false;
   /// Leaves out stars without a magnitude, and counts them in the notes; otherwise each of them is an error.
   bool leave_out_missing = false;
   /// Refuses positions stated in degrees whose star density only makes sense in radians.

@@ -21,4 +21,13 @@ struct PixelShift {
   double dy = 0.0;
 };
 
+/// Covariance of a displacement on the detector, px².
+struct MotionCovariance {
+  double sxx = 0.0;
+  double sxy = 0.0;
+  double syy = 0.0;
+  /// Variance of gx dx + gy dy.
+  [[nodiscard]] double along(double gx, double gy) const { return gx * gx * sxx + 2.0 * gx * gy * sxy + gy * gy * syy; }
+};
+
 }  // namespace astroid

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/image.hpp"
@@ -32,6 +33,16 @@ class PixelPsf {
   /// @param dpdx, dpdy  [out] shape (box.ny, box.nx), unit 1/px.
   virtual void integrate_gradient(PixelPosition centre, Rectangle box, std::span<double> dpdx,
                                   std::span<double> dpdy) const = 0;
+
+  /// The fractions of a star that moves about `centre` while it is exposed, to second order in the motion.
+  ///
+  /// Exact mean for a Gaussian PSF and Gaussian motion along the axes (sigma -> sqrt(sigma² + s²)); in general the
+  /// three-point Gauss-Hermite rule along the principal axes of the motion.
+  /// @param motion     covariance of the position about its mean, px².
+  /// @param fractions  [out] shape (box.ny, box.nx).  @param scratch  resized as needed.
+  /// @accuracy  O(motion² / sigma⁴) relative (test: PixelPsf.BroadeningIsTheMeanOfMovedStamps).  @source F26
+  virtual void integrate_broadened(PixelPosition centre, const MotionCovariance& motion, Rectangle box,
+                                   std::span<double> fractions, std::vector<double>& scratch) const;
 
   /// Half-width in pixels of the square stamp around the star outside of which less than `lost` of its flux falls,
   /// for any sub-pixel position.  @param lost  in (0, 1)

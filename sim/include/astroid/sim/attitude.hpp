@@ -1,0 +1,94 @@
+// The spacecraft's attitude: shared by all cameras, a pure function of absolute time.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "astroid/core/geometry.hpp"
+#include "astroid/core/mission.hpp"
+#include "astroid/core/random.hpp"
+#include "astroid/core/wcs.hpp"
+
+namespace astroid {
+
+/// Deviation from the nominal pointing, arcsec.
+struct Attitude {
+  double yaw = 0.0, pitch = 0.0, roll = 0.0;
+};
+
+/// Displacement of a star whose Jacobian is given. @returns px
+PixelShift displacement(const AttitudeJacobian& jacobian, const Attitude& attitude);
+
+/// Variance of yaw, pitch and roll, arcsec², where the axes are independent.
+struct AttitudeVariance {
+  double yaw = 0.0, pitch = 0.0, roll = 0.0;
+};
+
+/// Covariance of yaw, pitch and roll, arcsec².
+struct AttitudeCovariance {
+  double yaw_yaw = 0.0, yaw_pitch = 0.0, yaw_roll = 0.0, pitch_pitch = 0.0, pitch_roll = 0.0, roll_roll = 0.0;
+};
+
+/// Mean of a few attitudes, and their covariance about it.
+struct AttitudeMoments {
+  Attitude mean;
+  AttitudeCovariance covariance;
+};
+/// @param attitude  not empty; every one counts the same.
+AttitudeMoments attitude_moments(std::span<const Attitude> attitude);
+
+/// The covariance on the detector of a star whose Jacobian is given. @returns px²
+MotionCovariance motion_covariance(const AttitudeJacobian& jacobian, const AttitudeCovariance& attitude);
+MotionCovariance motion_covariance(const AttitudeJacobian& jacobian, const AttitudeVariance& attitude);
+
+/// Where the spacecraft points while exposures are taken.
+class AttitudeModel {
+ public:
+  AttitudeModel() = default;
+  AttitudeModel(const AttitudeModel&) = delete;
+  AttitudeModel& operator=(const AttitudeModel&) = delete;
+  AttitudeModel(AttitudeModel&&) = delete;
+  AttitudeModel& operator=(AttitudeModel&&) = delete;
+  virtual ~AttitudeModel() = default;
+
+  /// Calls `visit` for exposures 0 … count-1 with the attitudes at the midpoints of `steps` equal parts of each.
+  /// A longer series has the shorter one as its beginning, bit for bit.
+  virtual void for_each_exposure(std::int64_t count, int steps,
+                                 const std::function<void(std::span<const Attitude>)>& visit) const = 0;
+  /// All of them at once, shape (count, steps).
+  [[nodiscard]] std::vector<Attitude> sample(std::int64_t count, int steps) const;
+  /// Variance of one instant.
+  [[nodiscard]] virtual AttitudeVariance variance() const = 0;
+  /// Variance of the mean over one exposure, and of the mean of `exposures` successive exposure means.
+  [[nodiscard]] virtual AttitudeVariance variance_of_mean(std::int64_t exposures) const = 0;
+  /// Number of equal steps in an exposure that keeps the rms error of its mean attitude below `fraction` of the rms.
+  [[nodiscard]] virtual int steps_for(double fraction) const = 0;
+  [[nodiscard]] virtual std::string description() const = 0;
+};
+
+/// The attitude of every exposure of a run, computed once and shared by all cameras.
+struct AttitudeSeries {
+  std::vector<AttitudeMoments> moments;  ///< [exposure]; empty when nothing moves
+  std::vector<Attitude> samples;         ///< [exposure][step], only where exposures are rendered step by step
+  int steps = 1;
+};
+
+/// No motion at all.
+std::shared_ptr<const AttitudeModel> make_still_attitude();
+
+/// Ornstein–Uhlenbeck jitter by its exact update, x' = a x + s sqrt(1 - a²) n with a = exp(-dt/tau), from a stationary
+/// start, one independent process an axis (F29).
+/// @source UhlenbeckOrnstein1930
+std::shared_ptr<const AttitudeModel> make_red_noise_attitude(const JitterSettings& jitter,
+                                                             const SimulationSettings& simulation,
+                                                             const RandomStream& stream);
+
+/// Attitude from a file of columns time_s, yaw, pitch, roll (s since start, arcsec), linear between its samples.
+/// @throws InputError with every bad line, or when the file does not cover the run.
+std::shared_ptr<const AttitudeModel> make_file_attitude(const std::string& path, const SimulationSettings& simulation);
+
+}  // namespace astroid

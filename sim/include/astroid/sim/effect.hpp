@@ -1,0 +1,124 @@
+// What an effect is: data about itself and two functions. No files, no configuration strings, no clock, no mutable
+// members.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "astroid/core/frame.hpp"
+#include "astroid/core/random.hpp"
+#include "astroid/sim/attitude.hpp"
+#include "astroid/sim/scene_summary.hpp"
+
+namespace astroid {
+
+class Scene;
+struct PlanKnobs;
+
+/// Levels of the chain, in the order of the run.
+enum class EffectLevel : std::uint8_t {
+  kCatalogue,
+  kPointing,
+  kOptics,
+  kSky,
+  kSubPixel,
+  kPixelMean,    ///< expected electrons
+  kPixelSample,  ///< drawn electrons
+  kReadout,      ///< ADU
+};
+std::string_view to_string(EffectLevel level);
+
+/// What an effect can read and write; bits.
+namespace plane_bit {
+inline constexpr std::uint32_t kStars = 1U << 0;     ///< positions and fluxes of the scene (given)
+inline constexpr std::uint32_t kAttitude = 1U << 1;  ///< displacement of the exposure
+inline constexpr std::uint32_t kExpected = 1U << 2;  ///< expected electrons
+inline constexpr std::uint32_t kSampled = 1U << 3;   ///< drawn electrons
+inline constexpr std::uint32_t kAnalog = 1U << 4;    ///< ADU before digitising
+inline constexpr std::uint32_t kDigital = 1U << 5;   ///< ADU as delivered
+inline constexpr std::uint32_t kFlags = 1U << 6;     ///< pixel flags (given, zero)
+}  // namespace plane_bit
+
+enum class RandomScope : std::uint8_t { kNone, kStatic, kPerExposure };
+
+/// `halo_px` of an effect that needs a whole column or frame.
+inline constexpr int kWholeColumn = -1;
+
+/// An effect's data about itself.
+struct EffectSpec {
+  std::string_view name;
+  StreamId id;  ///< number of its random stream, never reused
+  EffectLevel level;
+  std::uint32_t reads;   ///< plane_bit
+  std::uint32_t writes;  ///< plane_bit
+  int halo_px;           ///< how far a pixel's result depends on other pixels; kWholeColumn: on all of them
+  RandomScope random;
+  std::string_view source;  ///< key in docs/references.bib, empty where the formula is elementary
+};
+
+/// Whether an effect is needed, why, and what skipping it would cost.
+struct EffectNeed {
+  bool needed = false;
+  std::string why;          ///< in words, with numbers
+  double bias_bound = 0.0;  ///< e- per exposure on any target's flux, if skipped
+  double variance_bound =
+      0.0;  ///< of any target's flux at the longest reported time bin with all cameras, relative to its variance
+};
+
+/// What happens to one camera that does not change from exposure to exposure; built once, then only read.
+struct CameraState {
+  int camera = 0;
+  Plane<float, unit::Relative> prnu;             ///< pixel response, mean 1; empty when the effect is off
+  Plane<float, unit::ExpectedElectrons> dark;    ///< dark electrons per exposure; empty when the effect is off
+  Plane<double, unit::ExpectedElectrons> still;  ///< noiseless image, when nothing in it changes; else empty
+};
+
+/// Everything that belongs to one exposure of one camera. One worker owns it.
+struct ExposureState {
+  int camera = 0;
+  std::int64_t exposure = 0;
+  AttitudeMoments attitude;                  ///< of the exposure; zero when nothing moves
+  std::span<const Attitude> attitude_steps;  ///< of the exposure, where the plan renders step by step
+  Plane<double, unit::ExpectedElectrons> expected;
+  Plane<double, unit::SampledElectrons> sampled;
+  Plane<double, unit::Adu> analog;
+  Frame frame;
+  double lost_electrons = 0.0;         ///< charge that left through the edge of the frame or was clipped
+  std::int64_t clipped_pixels = 0;     ///< by the ADC
+  std::vector<double> effect_seconds;  ///< of each effect of the plan, added up over the exposures this state has seen
+  std::vector<double> stamp;           ///< of the renderer; its content means nothing between calls
+  std::vector<double> scratch;         ///< of the renderer; its content means nothing between calls
+};
+
+/// What an effect may look at besides the exposure.
+struct EffectContext {
+  const Scene& scene;
+  const PlanKnobs& knobs;
+  const CameraState& camera;
+  RandomStream stream;  ///< of this effect and camera
+  const AttitudeSeries& attitude;
+};
+
+/// One physical effect.
+class Effect {
+ public:
+  Effect() = default;
+  Effect(const Effect&) = delete;
+  Effect& operator=(const Effect&) = delete;
+  Effect(Effect&&) = delete;
+  Effect& operator=(Effect&&) = delete;
+  virtual ~Effect() = default;
+
+  [[nodiscard]] virtual const EffectSpec& spec() const = 0;
+  /// Decides from full-frame numbers of the scene, so windows and variants of one scene share the decision.
+  [[nodiscard]] virtual EffectNeed is_needed(const SceneSummary& scene) const = 0;
+  /// Draws what is fixed for a camera (scope `static`). The default has nothing to draw.
+  virtual void prepare(CameraState& camera, const Scene& scene, const RandomStream& stream) const;
+  /// Changes one exposure. @thread safe for different states.
+  virtual void apply(ExposureState& state, const EffectContext& context) const = 0;
+};
+
+}  // namespace astroid

@@ -1,0 +1,78 @@
+// The plan: what will be computed, decided before any pixel is made, and explained.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "astroid/sim/effect.hpp"
+#include "astroid/sim/scene.hpp"
+
+namespace astroid {
+
+/// How the motion within and between exposures enters the image.
+enum class JitterTreatment : std::uint8_t {
+  kNone,       ///< nothing moves
+  kShift,      ///< stars at their mean position of the exposure
+  kBroadened,  ///< the same, and the PSF broadened by the motion about it
+  kSubSteps,   ///< the mean of the images at every step of the exposure
+};
+std::string_view to_string(JitterTreatment treatment);
+
+/// Stamp size of the stars down to a magnitude.
+struct StampTier {
+  double min_electrons = 0.0;  ///< stars with at least this many belong to the tier (unless a brighter one takes them)
+  double half_width = 0.0;     ///< px
+  std::size_t stars = 0;
+};
+
+/// What the renderer and the effects take from the plan.
+struct PlanKnobs {
+  JitterTreatment jitter = JitterTreatment::kNone;
+  int attitude_steps = 1;         ///< per exposure
+  std::vector<StampTier> stamps;  ///< brightest first
+  std::vector<std::vector<std::uint32_t>>
+      stars_of_region;  ///< of the layout: stars that may reach it, in catalogue order
+  [[nodiscard]] double stamp_half_width(double electrons) const;
+};
+
+struct PlannedEffect {
+  const Effect* effect = nullptr;
+  EffectNeed need;
+};
+
+/// How the error allowed by the accuracy is shared out, relative to a target's flux tolerance.
+struct AccuracyShares {
+  double psf = 0.4;     ///< phases and interpolation of the prf renderer
+  double stamps = 0.3;  ///< truncation
+  double jitter = 0.3;  ///< sampling of the motion
+};
+
+/// The immutable plan of a scene.
+struct Plan {
+  std::vector<PlannedEffect> effects;  ///< every effect of the table, on or off
+  PlanKnobs knobs;
+  std::string renderer;      ///< analytic or prf
+  std::string pixels;        ///< full frame, sub-field or windows, and what is exact
+  bool still = false;        ///< the noiseless image is the same in every exposure
+  double stamp_error = 0.0;  ///< bound of the error by truncation, e- per exposure on any target
+  double jitter_error = 0.0;
+  double psf_error = 0.0;
+  double tolerance = 0.0;             ///< the tightest of any target, e- per exposure
+  double seconds_per_exposure = 0.0;  ///< predicted, one core
+  double memory_bytes = 0.0;          ///< predicted, per worker
+  std::vector<std::string> approximations;
+
+  [[nodiscard]] bool runs(std::string_view effect) const;
+};
+
+/// Decides everything from the scene and the accuracy asked for.
+Plan make_plan(const Scene& scene);
+
+/// The plan as an explanation to a colleague (plan.txt) and as data (plan.json).
+std::string to_text(const Plan& plan, const Scene& scene);
+std::string to_json(const Plan& plan, const Scene& scene);
+
+}  // namespace astroid

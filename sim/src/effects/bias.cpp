@@ -1,0 +1,22 @@
+#include "effects/bias.hpp"
+
+#include <fmt/format.h>
+
+#include "astroid/sim/scene.hpp"
+
+namespace astroid {
+
+EffectNeed BiasEffect::is_needed(const SceneSummary& scene) const {
+  const double bias = scene.mission->ccd.bias.value();
+  return {
+      bias != 0.0,
+      bias != 0.0 ? fmt::format("{:.6g} ADU keep the noise above the bottom of the ADC", bias) : "the bias is 0 ADU",
+      0.0, 0.0};
+}
+
+void BiasEffect::apply(ExposureState& state, const EffectContext& context) const {
+  const double bias = context.scene.mission().ccd.bias.value();
+  for (double& counts : state.analog.pixels()) counts += bias;
+}
+
+}  // namespace astroid

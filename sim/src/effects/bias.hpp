@@ -1,0 +1,18 @@
+// Bias (offset) of the ADC.
+#pragma once
+
+#include "astroid/sim/effect.hpp"
+
+namespace astroid {
+
+/// Adds the constant bias.
+class BiasEffect final : public Effect {
+ public:
+  static constexpr EffectSpec kSpec{
+      "bias", StreamId{11}, EffectLevel::kReadout, plane_bit::kAnalog, plane_bit::kAnalog, 0, RandomScope::kNone, ""};
+  [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
+  [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
+  void apply(ExposureState& state, const EffectContext& context) const override;
+};
+
+}  // namespace astroid

@@ -1,0 +1,24 @@
+// Full well and blooming.
+#pragma once
+
+#include "astroid/sim/effect.hpp"
+
+namespace astroid {
+
+/// Spills what exceeds the full well along the column, half each way, into free room, and loses the rest at the edge.
+class FullWell final : public Effect {
+ public:
+  static constexpr EffectSpec kSpec{"full-well",
+                                    StreamId{8},
+                                    EffectLevel::kPixelSample,
+                                    plane_bit::kSampled,
+                                    plane_bit::kSampled | plane_bit::kFlags,
+                                    kWholeColumn,
+                                    RandomScope::kNone,
+                                    "Jannsen2024"};
+  [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
+  [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
+  void apply(ExposureState& state, const EffectContext& context) const override;
+};
+
+}  // namespace astroid

@@ -1,0 +1,17 @@
+#include "effects/jitter_model.hpp"
+
+#include "effects/jitter_need.hpp"
+
+namespace astroid {
+
+EffectNeed JitterModelEffect::is_needed(const SceneSummary& scene) const {
+  if (scene.mission->satellite.jitter.model != JitterModel::kRedNoise)
+    return {false, "no jitter model is configured", 0.0, 0.0};
+  return jitter_need(scene);
+}
+
+void JitterModelEffect::apply(ExposureState& state, const EffectContext& context) const {
+  take_attitude(state, context.attitude);
+}
+
+}  // namespace astroid

@@ -1,0 +1,25 @@
+#include "effects/sky.hpp"
+
+#include <fmt/format.h>
+
+#include "astroid/sim/scene.hpp"
+#include "effects/need.hpp"
+
+namespace astroid {
+
+namespace {
+Electrons sky_electrons(const Mission& mission) {
+  return mission.field.sky_background * mission.simulation.exposure_time;
+}
+}  // namespace
+
+EffectNeed Sky::is_needed(const SceneSummary& scene) const {
+  return background_need(scene, sky_electrons(*scene.mission).value(), "sky");
+}
+
+void Sky::apply(ExposureState& state, const EffectContext& context) const {
+  const double level = sky_electrons(context.scene.mission()).value();
+  for (double& pixel : state.expected.pixels()) pixel += level;
+}
+
+}  // namespace astroid

@@ -1,0 +1,182 @@
+#include "astroid/sim/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+
+#include "astroid/core/math.hpp"
+#include "astroid/sim/effect_table.hpp"
+#include "plan_cost.hpp"
+
+namespace astroid {
+
+namespace {
+
+/// A target's aperture may touch the wings of this many equally bright neighbours.
+constexpr double kNeighbours = 4.0;
+/// Flux ratio of one magnitude, the width of a stamp tier.
+constexpr double kTier = 2.51188643150958;
+
+/// Stamps so large that what lies outside them stays below the truncation's share of every target's tolerance.
+std::vector<StampTier> plan_stamps(const Scene& scene, double share, double& error) {
+  const SceneSummary& s = scene.summary();
+  const double fixed = scene.mission().psf.stamp_half_width.value();
+  std::map<int, StampTier, std::greater<>> tiers;
+  for (const SceneStar& star : scene.stars()) {
+    if (!(star.electrons > 0.0)) continue;
+    const int tier = static_cast<int>(std::floor(det::log(star.electrons) / det::log(kTier)));
+    StampTier& t = tiers[tier];
+    t.min_electrons = det::pow(kTier, tier);
+    ++t.stars;
+  }
+  std::vector<StampTier> stamps;
+  error = 0.0;
+  for (auto& [number, tier] : tiers) {
+    const double brightest = tier.min_electrons * kTier;
+    const double own = share * s.flux_tolerance(tier.min_electrons) / brightest;
+    const double neighbour = share * s.tightest_tolerance() / (kNeighbours * brightest);
+    constexpr double kLargestLoss = 0.5;
+    constexpr double kSmallestLoss = 1e-13;  // beyond it the wings are below rounding
+    const double lost = std::clamp(std::min(own, neighbour), kSmallestLoss, kLargestLoss);
+    tier.half_width = fixed > 0.0 ? fixed : scene.psf().stamp_half_width(lost);
+    stamps.push_back(tier);
+  }
+  error = share * s.tightest_tolerance();
+  return stamps;
+}
+
+/// Chooses how motion enters the image so that what is neglected stays below its share of the brightest target's
+/// tolerance.
+void plan_jitter(const Scene& scene, double share, bool moves, Plan& plan) {
+  const SceneSummary& s = scene.summary();
+  if (!moves) return;
+  const double flux = s.brightest_target_electrons;
+  if (!(flux > 0.0)) return;
+  // The mean position of an exposure is a random quantity: an error of it that is small against the exposure's own
+  // noise with all cameras, which it does not share, changes no statistics.
+  const double noise = det::sqrt(kVarianceTolerance * s.relative_variance_in_bin(flux) * s.exposures_per_bin);
+  const double first_order = s.psf.gradient * s.attitude_rms_px;
+  plan.knobs.attitude_steps = scene.attitude().steps_for(first_order > 0.0 ? noise / first_order : 1.0);
+
+  const double allowed = share * s.flux_tolerance(flux) / flux;  // relative
+  // Both axes: half the curvature times the variance of the motion, and what the next order leaves of it.
+  const double second_order = s.psf.curvature * s.attitude_rms_in_exposure_px * s.attitude_rms_in_exposure_px;
+  const double fourth_order = second_order * second_order;
+  if (second_order <= allowed) {
+    plan.knobs.jitter = JitterTreatment::kShift;
+    plan.jitter_error = flux * second_order;
+  } else if (fourth_order <= allowed) {
+    plan.knobs.jitter = JitterTreatment::kBroadened;
+    plan.jitter_error = flux * fourth_order;
+  } else {
+    plan.knobs.jitter = JitterTreatment::kSubSteps;
+    plan.jitter_error = flux * second_order / plan.knobs.attitude_steps;
+  }
+}
+
+/// Stars that can reach each region, found through a grid of cells so that many windows do not cost stars x windows.
+std::vector<std::vector<std::uint32_t>> stars_by_region(const Scene& scene, const PlanKnobs& knobs) {
+  constexpr int kCell = 64;  // px
+  const auto cell = [](double v) { return static_cast<int>(std::floor(v / kCell)); };
+  std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
+  double widest = 0.0;
+  for (std::size_t i = 0; i < scene.stars().size(); ++i) {
+    const SceneStar& star = scene.stars()[i];
+    cells[{cell(star.position.x), cell(star.position.y)}].push_back(static_cast<std::uint32_t>(i));
+    widest = std::max(widest, knobs.stamp_half_width(star.electrons));
+  }
+  constexpr double kExcursion = 8.0;  // rms; and one pixel for the stamp's own rounding
+  const double margin = kExcursion * scene.summary().attitude_rms_px + 1.0;
+  std::vector<std::vector<std::uint32_t>> result;
+  for (const Rectangle& region : scene.layout()->regions()) {
+    std::vector<std::uint32_t>& list = result.emplace_back();
+    const double reach = widest + margin + 1.0;
+    for (int cy = cell(region.y0 - reach); cy <= cell(region.y1() + reach); ++cy)
+      for (int cx = cell(region.x0 - reach); cx <= cell(region.x1() + reach); ++cx) {
+        const auto found = cells.find({cx, cy});
+        if (found == cells.end()) continue;
+        for (const std::uint32_t i : found->second) {
+          const SceneStar& star = scene.stars()[i];
+          const Rectangle box = stamp_box(star.position, knobs.stamp_half_width(star.electrons) + margin);
+          if (star.electrons > 0.0 && !intersect(box, region).empty()) list.push_back(i);
+        }
+      }
+    std::ranges::sort(list);
+  }
+  return result;
+}
+
+std::string describe_pixels(const Scene& scene, const Plan& plan, std::vector<std::string>& approximations) {
+  const CcdSettings& ccd = scene.mission().ccd;
+  const bool blooms = plan.runs("full-well") && ccd.blooming;
+  if (ccd.window > 0 || ccd.has_sub_field) {
+    if (blooms)
+      approximations.emplace_back(
+          "charge that blooms into the computed pixels from saturated stars outside them is left out; everything else "
+          "is "
+          "bit for bit what the full frame has");
+  }
+  if (ccd.window > 0)
+    return fmt::format("{} windows of {} x {} px ({} px in all) of the {} x {} px detector",
+                       scene.layout()->regions().size(), ccd.window, ccd.window, scene.layout()->size(), ccd.columns,
+                       ccd.rows);
+  if (ccd.has_sub_field)
+    return fmt::format("sub-field of {} x {} px from ({}, {}) of the {} x {} px detector", ccd.sub_columns,
+                       ccd.sub_rows, ccd.sub_x0, ccd.sub_y0, ccd.columns, ccd.rows);
+  return fmt::format("full frame of {} x {} px", ccd.columns, ccd.rows);
+}
+
+}  // namespace
+
+std::string_view to_string(JitterTreatment treatment) {
+  switch (treatment) {
+    case JitterTreatment::kNone:
+      return "none";
+    case JitterTreatment::kShift:
+      return "shift";
+    case JitterTreatment::kBroadened:
+      return "shift and broadening";
+    case JitterTreatment::kSubSteps:
+      return "sub-steps";
+  }
+  return "?";
+}
+
+double PlanKnobs::stamp_half_width(double electrons) const {
+  for (const StampTier& tier : stamps)
+    if (electrons >= tier.min_electrons) return tier.half_width;
+  return stamps.empty() ? 0.0 : stamps.back().half_width;
+}
+
+bool Plan::runs(std::string_view effect) const {
+  return std::ranges::any_of(effects,
+                             [&](const PlannedEffect& e) { return e.effect->spec().name == effect && e.need.needed; });
+}
+
+Plan make_plan(const Scene& scene) {
+  constexpr AccuracyShares kShares;
+  Plan plan;
+  const SceneSummary& summary = scene.summary();
+  bool moves = false;
+  for (const auto& effect : effect_table(scene.mission().simulation.type)) {
+    PlannedEffect planned{effect.get(), effect->is_needed(summary)};
+    moves = moves || (planned.need.needed && effect->spec().level == EffectLevel::kPointing);
+    plan.effects.push_back(std::move(planned));
+  }
+  plan.still = !moves;
+  plan.tolerance = summary.tightest_tolerance();
+  plan.renderer = scene.mission().psf.model == PsfModel::kGaussian ? "analytic" : "prf";
+  plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
+  plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
+  plan_jitter(scene, kShares.jitter, moves, plan);
+  plan.knobs.stars_of_region = stars_by_region(scene, plan.knobs);
+  plan.pixels = describe_pixels(scene, plan, plan.approximations);
+  plan.seconds_per_exposure = predicted_seconds(plan, scene);
+  plan.memory_bytes = predicted_memory(plan, scene);
+  return plan;
+}
+
+}  // namespace astroid

@@ -1,0 +1,17 @@
+// What a plan costs, predicted before it runs.
+#pragma once
+
+#include "astroid/sim/plan.hpp"
+
+namespace astroid {
+
+/// Predicted time of one exposure of one camera on one core, simulation only.
+double predicted_seconds(const Plan& plan, const Scene& scene);
+
+/// Predicted time of one effect in one exposure, s; 0 when it is off or cached.
+double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Scene& scene);
+
+/// Predicted memory of one worker's state, bytes.
+double predicted_memory(const Plan& plan, const Scene& scene);
+
+}  // namespace astroid

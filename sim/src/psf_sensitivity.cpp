@@ -1,0 +1,58 @@
+#include "psf_sensitivity.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+namespace astroid {
+
+namespace {
+
+constexpr int kPhases =
+    8;  ///< sub-pixel phases an axis; motion is taken along x, the PSF's worst axis by symmetry of the masks
+constexpr int kLargestMask = 5;  ///< px
+constexpr double kLeastEnclosed = 0.3;
+constexpr double kStep = 0.01;  ///< px, of the finite differences
+
+double mask_flux(const PixelPsf& psf, PixelPosition centre, Rectangle mask, std::vector<double>& scratch) {
+  scratch.resize(mask.size());
+  psf.integrate(centre, mask, scratch);
+  double sum = 0.0;
+  for (const double fraction : scratch) sum += fraction;
+  return sum;
+}
+
+}  // namespace
+
+PsfSensitivity measure_sensitivity(const PixelPsf& psf) {
+  PsfSensitivity sensitivity;
+  std::vector<double> scratch;
+  for (int phase = 0; phase < kPhases; ++phase) {
+    const double offset = static_cast<double>(phase) / kPhases - 0.5;
+    for (const bool along_x : {true, false}) {
+      for (int size = 2; size <= kLargestMask; ++size) {
+        const Rectangle mask{-(size / 2), -(size / 2), size, size};
+        const auto flux_at = [&](double shift) {
+          const PixelPosition centre =
+              along_x ? PixelPosition{offset + shift, 0.0} : PixelPosition{0.0, offset + shift};
+          return mask_flux(psf, centre, mask, scratch);
+        };
+        const double middle = flux_at(0.0);
+        if (middle < kLeastEnclosed) continue;
+        const double left = flux_at(-kStep);
+        const double right = flux_at(kStep);
+        sensitivity.gradient = std::max(sensitivity.gradient, std::abs(right - left) / (2.0 * kStep * middle));
+        sensitivity.curvature =
+            std::max(sensitivity.curvature, std::abs(right - 2.0 * middle + left) / (kStep * kStep * middle));
+      }
+    }
+    for (int row = 0; row < kPhases; ++row) {
+      const PixelPosition centre{offset, static_cast<double>(row) / kPhases - 0.5};
+      sensitivity.peak_fraction = std::max(sensitivity.peak_fraction, mask_flux(psf, centre, {0, 0, 1, 1}, scratch));
+    }
+  }
+  return sensitivity;
+}
+
+}  // namespace astroid

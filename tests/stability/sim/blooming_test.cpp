@@ -1,0 +1,73 @@
+// Hard case N20: blooming conserves charge.
+#include "astroid/sim/blooming.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numeric>
+#include <vector>
+
+namespace astroid {
+namespace {
+
+struct Bloomed {
+  std::vector<double> column;
+  double lost;
+};
+
+Bloomed bloom_column(const std::vector<double>& column, double full_well) {
+  Image<double, unit::SampledElectrons> image(1, static_cast<int>(column.size()));
+  std::copy(column.begin(), column.end(), image.pixels().begin());
+  const double lost = bloom(image.view(), full_well);
+  return {{image.pixels().begin(), image.pixels().end()}, lost};
+}
+
+double sum(const std::vector<double>& v) {
+  return std::accumulate(v.begin(), v.end(), 0.0);
+}
+
+TEST(Blooming, LosesHalfOfTheExcessAtANearEdge) {
+  std::vector<double> column(8, 0.0);
+  column[0] = 5.0;
+  const Bloomed result = bloom_column(column, 1.0);
+  EXPECT_DOUBLE_EQ(result.lost, 2.0);
+  EXPECT_EQ(result.column, (std::vector<double>{1, 1, 1, 0, 0, 0, 0, 0}));
+}
+
+TEST(Blooming, SpillsAlongTheColumnAsFarAsThereIsRoom) {
+  std::vector<double> column(20, 0.0);
+  column.insert(column.end(), {10.0, 40.0, 10.0});
+  column.resize(63, 0.0);
+  const Bloomed result = bloom_column(column, 1.0);
+  EXPECT_DOUBLE_EQ(result.lost, 8.5);
+  EXPECT_DOUBLE_EQ(sum(result.column), 51.5);
+  for (const double pixel : result.column) EXPECT_LE(pixel, 1.0);
+}
+
+TEST(Blooming, ConservesChargeInAnyColumn) {
+  std::vector<double> column(400);
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = static_cast<double>((i * 2654435761U) % 1000003U) * 3.7;
+  const Bloomed result = bloom_column(column, 1.2e6);
+  const double before = sum(column);
+  EXPECT_NEAR(sum(result.column) + result.lost, before, 1e-12 * before);
+  EXPECT_GT(result.lost, 0.0);
+  for (const double pixel : result.column) EXPECT_LE(pixel, 1.2e6);
+}
+
+TEST(Blooming, LeavesAColumnWithoutExcessAlone) {
+  const std::vector<double> column{0.1, 0.2, 0.3, 1.0, -0.4};
+  const Bloomed result = bloom_column(column, 1.0);
+  EXPECT_EQ(result.column, column);
+  EXPECT_EQ(result.lost, 0.0);
+}
+
+TEST(FullWellClip, CountsWhatItRemoves) {
+  Image<double, unit::SampledElectrons> image(2, 1);
+  image.at(0, 0) = 5.0;
+  image.at(1, 0) = 0.5;
+  EXPECT_DOUBLE_EQ(clip_full_well(image.view(), 1.0), 4.0);
+  EXPECT_EQ(image.at(0, 0), 1.0);
+  EXPECT_EQ(image.at(1, 0), 0.5);
+}
+
+}  // namespace
+}  // namespace astroid
