@@ -1,0 +1,201 @@
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "astroid/core/error.hpp"
+#include "commands/commands.hpp"
+
+namespace astroid {
+
+namespace {
+
+using namespace commands;
+
+void add_configuration(CLI::App* app, ConfigurationOptions& options) {
+  app->add_option("CONFIG", options.configuration, "configuration file, or the name of a mission preset (plato)")
+      ->required();
+  app->add_option("--set", options.set, "override a parameter: Path/To/Parameter=value (repeatable)")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  app->add_option("--seed", options.seed, "override Simulation/Seed")->type_name("N");
+}
+
+void add_overwrite(CLI::App* app, bool& overwrite) {
+  app->add_flag("--overwrite", overwrite, "replace what is already there");
+}
+
+void add_run_folder(CLI::App* app, RunFolderOptions& options, const std::string& fallback) {
+  options.folder = fallback;
+  app->add_option("-o,--output", options.folder, "folder of the products")->type_name("DIR")->capture_default_str();
+  app->add_flag("--overwrite", options.overwrite, "replace the folder if it exists");
+  app->add_option("--threads", options.threads, "worker threads (default: all processors)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  app->add_flag("-v,--verbose", options.verbose, "say where the time went");
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv) {
+  CLI::App app{"ASTROID finds out, before launch, how well a space camera will measure stars."};
+  app.name("astroid");
+  app.set_version_flag("--version", std::string("astroid ") + ASTROID_VERSION);
+  app.require_subcommand(1);
+  app.footer("Each command explains itself with -h. A first run: astroid assess plato -o out/plato");
+  std::function<int()> command;
+
+  AssessOptions assess_options;
+  CLI::App* sub = app.add_subcommand("assess", "the main job: simulate, calibrate, measure, analyse and report");
+  add_configuration(sub, assess_options.configuration);
+  add_run_folder(sub, assess_options.run, "out/assess");
+  sub->add_option("--dump-steps", assess_options.dump_steps,
+                  "write the maps after each step of these exposures as FITS")
+      ->delimiter(',')
+      ->type_name("N,N");
+  sub->callback([&] { command = [&] { return assess(assess_options); }; });
+
+  AssessOptions simulate_options;
+  sub = app.add_subcommand("simulate", "images and truth only");
+  add_configuration(sub, simulate_options.configuration);
+  add_run_folder(sub, simulate_options.run, "out/simulate");
+  sub->add_option("--dump-steps", simulate_options.dump_steps,
+                  "write the maps after each step of these exposures as FITS")
+      ->delimiter(',')
+      ->type_name("N,N");
+  sub->callback([&] { command = [&] { return simulate(simulate_options); }; });
+
+  PhotometryOptions photometry_options;
+  sub = app.add_subcommand("photometry", "fluxes of catalogue positions from any FITS images");
+  sub->add_option("IMAGE", photometry_options.images, "FITS images")->required();
+  sub->add_option("--catalogue", photometry_options.catalogue,
+                  "positions: a catalogue with ra,dec (the image needs a WCS) or x,y")
+      ->required()
+      ->type_name("FILE");
+  sub->add_option("--method", photometry_options.method, "aperture, mask (optimal binary) or weighted")
+      ->check(CLI::IsMember({"aperture", "mask", "weighted"}))
+      ->capture_default_str();
+  sub->add_option("--psf", photometry_options.psf, "a FITS file, or gaussian:SIGMA_PX; masks need it")
+      ->type_name("PSF");
+  sub->add_option("--radius", photometry_options.radius, "aperture radius")->type_name("PX");
+  sub->add_option("--background", photometry_options.background, "local, mesh, or a known level in the image's unit")
+      ->capture_default_str();
+  sub->add_option("--gain", photometry_options.gain, "if the header does not say it")->type_name("E-/ADU");
+  sub->add_option("--read-noise", photometry_options.read_noise, "if the header does not say it")->type_name("E-");
+  sub->add_option("--saturation", photometry_options.saturation, "if the header does not say it")->type_name("ADU");
+  sub->add_option("--zero-point", photometry_options.zero_point, "magnitude of one electron per second")
+      ->type_name("MAG");
+  sub->add_option("--exposure-time", photometry_options.exposure_time, "if the header does not say it")->type_name("S");
+  sub->add_option("-o,--output", photometry_options.output, "table of fluxes")
+      ->type_name("FILE")
+      ->capture_default_str();
+  add_overwrite(sub, photometry_options.overwrite);
+  sub->callback([&] { command = [&] { return photometry(photometry_options); }; });
+
+  AnalyseOptions analyse_options;
+  sub = app.add_subcommand("analyse", "metrics and report of a finished run, or of fluxes and truth given by hand");
+  sub->add_option("DIR", analyse_options.folder, "folder of a finished run")->type_name("DIR");
+  sub->add_option("--truth", analyse_options.truth, "truth table (id,x,y,mag,electrons), with --sources")
+      ->type_name("FILE");
+  sub->add_option("--sources", analyse_options.sources, "table of fluxes as `astroid photometry` writes it")
+      ->type_name("FILE");
+  sub->add_option("--set", analyse_options.set, "override a parameter, such as Analysis/Bin=7200 s")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  sub->add_option("--export", analyse_options.export_ids,
+                  "write the light curves of these stars as files that lightkurve opens")
+      ->type_name("ID")
+      ->delimiter(',');
+  sub->add_option("-o,--output", analyse_options.output, "folder of the results (default: the run's own)")
+      ->type_name("DIR");
+  add_overwrite(sub, analyse_options.overwrite);
+  sub->add_option("--threads", analyse_options.threads, "worker threads (default: all processors)")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  sub->callback([&] { command = [&] { return analyse(analyse_options); }; });
+
+  PlanOptions plan_options;
+  sub = app.add_subcommand("plan", "what would be computed, why, and its predicted time, memory and error");
+  add_configuration(sub, plan_options.configuration);
+  sub->add_flag("--json", plan_options.json, "as JSON");
+  sub->callback([&] { command = [&] { return plan(plan_options); }; });
+
+  BudgetOptions budget_options;
+  sub = app.add_subcommand("budget", "the noise budget by source and magnitude");
+  add_configuration(sub, budget_options.configuration);
+  sub->add_flag("--analytic", budget_options.analytic, "the prediction alone, in milliseconds")->required();
+  sub->add_option("--from", budget_options.mag_from, "brightest magnitude")->type_name("MAG")->capture_default_str();
+  sub->add_option("--to", budget_options.mag_to, "faintest magnitude")->type_name("MAG")->capture_default_str();
+  sub->add_option("--step", budget_options.mag_step, "step")
+      ->type_name("MAG")
+      ->capture_default_str()
+      ->check(CLI::PositiveNumber);
+  sub->add_option("-o,--output", budget_options.output, "write the table as CSV")->type_name("FILE");
+  add_overwrite(sub, budget_options.overwrite);
+  sub->callback([&] { command = [&] { return budget(budget_options); }; });
+
+  FieldOptions field_options;
+  sub = app.add_subcommand("field", "make a synthetic star field, or extend a catalogue to faint magnitudes");
+  sub->add_option("--extend", field_options.extend, "catalogue to extend")->type_name("FILE");
+  sub->add_option("--ra", field_options.ra, "centre")->type_name("DEG");
+  sub->add_option("--dec", field_options.dec, "centre")->type_name("DEG");
+  sub->add_option("--radius", field_options.radius, "of a round field")->type_name("DEG");
+  sub->add_option("--width", field_options.width, "of a rectangular field, along right ascension on the sky")
+      ->type_name("DEG");
+  sub->add_option("--height", field_options.height, "of a rectangular field, along declination")->type_name("DEG");
+  sub->add_option("--number", field_options.number, "number of stars")->type_name("N");
+  sub->add_option("--density", field_options.density, "stars per square degree, instead of --number")
+      ->type_name("N/DEG2");
+  sub->add_option("--bright", field_options.bright, "brightest magnitude")->type_name("MAG")->capture_default_str();
+  sub->add_option("--faint", field_options.faint, "faintest magnitude")->type_name("MAG")->capture_default_str();
+  sub->add_option("--slope", field_options.slope,
+                  "of the counts: N grows as 10^(slope mag) (default: 0.35, or the catalogue's own)");
+  sub->add_flag("--only-new", field_options.only_new,
+                "with --extend: write the added stars alone, for StellarField/BackgroundCatalogue");
+  sub->add_option("--complete-to", field_options.complete_to,
+                  "magnitude to which the extended catalogue is complete (default: its turn-over)")
+      ->type_name("MAG");
+  sub->add_option("--passband", field_options.passband, "of the magnitudes")->capture_default_str();
+  sub->add_option("--seed", field_options.seed, "of the random numbers")->type_name("N")->capture_default_str();
+  sub->add_option("-o,--output", field_options.output, "catalogue to write (CSV)")->type_name("FILE")->required();
+  add_overwrite(sub, field_options.overwrite);
+  sub->callback([&] { command = [&] { return field(field_options); }; });
+
+  std::string mission;
+  std::string init_output;
+  bool init_overwrite = false;
+  sub = app.add_subcommand("init", "write a mission preset to start from");
+  sub->add_option("MISSION", mission, "plato")->required();
+  sub->add_option("-o,--output", init_output, "file to write (default: MISSION.xml)")->type_name("FILE");
+  add_overwrite(sub, init_overwrite);
+  sub->callback([&] { command = [&] { return init(mission, init_output, init_overwrite); }; });
+
+  ConfigurationOptions validate_options;
+  bool schema = false;
+  sub = app.add_subcommand("validate", "check a configuration and list every problem");
+  sub->add_option("CONFIG", validate_options.configuration, "configuration file, or the name of a mission preset");
+  sub->add_option("--set", validate_options.set, "override a parameter")
+      ->type_name("PATH=VALUE")
+      ->allow_extra_args(false);
+  sub->add_flag("--schema", schema, "print the XML schema (XSD) for editors and xmllint instead");
+  sub->callback([&] { command = [&] { return validate(validate_options, schema); }; });
+
+  std::string parameter;
+  sub = app.add_subcommand("explain", "what a parameter means, its unit, range and default");
+  sub->add_option("PARAMETER", parameter, "CCD/Gain, Gain, or a section; nothing for the list");
+  sub->callback([&] { command = [&] { return explain(parameter); }; });
+
+  sub = app.add_subcommand("doctor", "versions of everything the program runs on, and what is missing");
+  sub->callback([&] { command = [] { return doctor(); }; });
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    const int code = app.exit(error);
+    return code == 0 ? 0 : static_cast<int>(ExitCode::kInput);
+  }
+  return command();
+}
+
+}  // namespace astroid

@@ -1,0 +1,17 @@
+#include "astroid/sim/plan.hpp"
+
+#include <fmt/format.h>
+
+#include "astroid/pipeline/run.hpp"
+#include "commands/commands.hpp"
+#include "commands/configuration.hpp"
+
+namespace astroid::commands {
+
+int plan(const PlanOptions& options) {
+  const PreparedRun run = prepare_run(read(options.configuration).mission);
+  fmt::print("{}", options.json ? to_json(*run.plan, *run.scene) : to_text(*run.plan, *run.scene));
+  return 0;
+}
+
+}  // namespace astroid::commands

@@ -1,0 +1,62 @@
+// The stream of exposures: simulate, measure, accumulate, write; memory does not grow with the number of exposures.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "astroid/analysis/nsr_accumulator.hpp"
+#include "astroid/photometry/estimator.hpp"
+#include "astroid/sim/plan.hpp"
+#include "astroid/sim/scene.hpp"
+
+namespace astroid {
+
+/// What a stream reports while it runs: exposures done and in all (of every camera).
+using Progress = std::function<void(std::int64_t done, std::int64_t all)>;
+
+struct StreamOptions {
+  int threads = 1;
+  std::filesystem::path folder;  ///< products go to folder/images, folder/photometry, folder/steps; empty: nowhere
+  Progress progress;
+};
+
+/// CPU seconds by stage, summed over the workers, and wall seconds of the whole.
+struct StreamTimings {
+  double prepare = 0.0;  ///< fixed patterns, attitude, noiseless image
+  double simulate = 0.0;
+  double measure = 0.0;
+  double images = 0.0;  ///< writing frames
+  double statistics = 0.0;
+  double light_curves = 0.0;
+  double wall = 0.0;
+};
+
+/// What a stream leaves besides its files.
+struct StreamResult {
+  std::vector<SeriesSummary> series;    ///< of each target, mean of the simulated cameras
+  std::vector<double> reference;        ///< flux the series are relative to, e- per exposure
+  std::vector<std::uint32_t> flags;     ///< measurement_flag bits seen in any exposure, of each target
+  std::vector<double> flagged_share;    ///< share of exposures of a target with any flag
+  Image<float, unit::Adu> first_frame;  ///< exposure 0 of camera 0, largest region
+  StreamTimings timings;
+  std::vector<std::pair<std::string, double>> effect_seconds;  ///< CPU seconds of each effect that ran
+  double lost_electrons = 0.0;
+  std::int64_t clipped_pixels = 0;
+  std::int64_t images_written = 0;
+};
+
+/// Runs all exposures of all simulated cameras.
+///
+/// Exposure-parallel: each worker owns one state. Fluxes collect in blocks of exposures that are then transposed and
+/// given to the statistics and the light-curve file star by star, so results are the same for any number of threads.
+/// @param estimators  of the targets; empty: images only.
+/// @throws EnvironmentError when a product cannot be written.
+StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Plan>& plan,
+                              const std::vector<StarEstimator>& estimators, const StreamOptions& options);
+
+}  // namespace astroid

@@ -1,0 +1,35 @@
+// run.json: everything needed to know where a product came from.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "astroid/core/product_folder.hpp"
+#include "astroid/pipeline/exposure_stream.hpp"
+
+namespace astroid {
+
+struct RunRecord {
+  std::vector<std::string> command_line;
+  int threads = 1;
+  const Scene* scene = nullptr;
+  const Plan* plan = nullptr;
+  const StreamResult* stream = nullptr;
+  double analyse_seconds = 0.0;
+  double wall_seconds = 0.0;
+  std::vector<std::string> warnings;
+};
+
+/// Writes run.json into the folder, with a checksum of every other product in it. @throws EnvironmentError
+void write_run_record(const ProductFolder& folder, const RunRecord& record);
+
+/// Versions of the program and of the libraries it runs on, as `astroid doctor` prints them.
+struct ComponentVersion {
+  std::string name, version;
+};
+std::vector<ComponentVersion> component_versions();
+
+/// Highest resident memory of this process so far, bytes.
+double peak_memory_bytes();
+
+}  // namespace astroid

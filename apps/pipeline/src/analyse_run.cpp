@@ -1,0 +1,126 @@
+#include "astroid/pipeline/analyse_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <utility>
+
+#include "astroid/core/error.hpp"
+#include "astroid/core/fits_reader.hpp"
+#include "astroid/photometry/light_curves.hpp"
+#include "astroid/pipeline/ground.hpp"
+#include "folders.hpp"
+#include "report_run.hpp"
+
+namespace astroid {
+
+namespace {
+
+InputError not_a_run(const std::filesystem::path& folder, const std::string& what) {
+  return InputError(Problem{.file = folder.string(),
+                            .expected = "the folder of a finished `astroid assess` with Output/Lightcurves not none",
+                            .message = what});
+}
+
+/// What the stream would have left, read back from its products.
+StreamResult read_stream(const std::filesystem::path& file, const Scene& scene,
+                         const std::vector<StarEstimator>& estimators) {
+  const FitsReader fits(file);
+  const Mission& mission = scene.mission();
+  const std::optional<int> table = fits.find_unit("STARS");
+  const std::optional<int> curves = fits.find_unit(mission.telescope.simulated_cameras > 1 ? "COMBINED" : "CAMERA1");
+  if (!table || !curves) throw not_a_run(file, "there are no light curves in the file");
+  const std::vector<FitsUnit>& units = fits.units();
+  const FitsUnit& image = units[static_cast<std::size_t>(*curves) - 1];
+  const auto stars = static_cast<std::int64_t>(estimators.size());
+  if (image.axes.size() != 2 || image.axes[0] != mission.simulation.exposures || image.axes[1] != stars)
+    throw not_a_run(
+        file,
+        fmt::format("the light curves hold {}, not {} stars of {} exposures: the configuration does not belong to them",
+                    image.text(), stars, mission.simulation.exposures));
+  const std::optional<std::size_t> reference = fits.find_column(*table, "REFERENCE");
+  if (!reference) throw not_a_run(file, "the table of stars has no column REFERENCE");
+  StreamResult result;
+  result.reference = fits.read_numbers(*table, *reference);
+  result.flags.resize(estimators.size());
+  for (std::size_t t = 0; t < estimators.size(); ++t) result.flags[t] = estimators[t].flags;
+  if (const std::optional<int> flags = fits.find_unit("FLAGS")) {
+    const auto star = fits.find_column(*flags, "STAR");
+    const auto bits = fits.find_column(*flags, "FLAGS");
+    if (star && bits) {
+      const std::vector<std::int64_t> stars_flagged = fits.read_integers(*flags, *star);
+      const std::vector<std::int64_t> flag = fits.read_integers(*flags, *bits);
+      for (std::size_t i = 0; i < flag.size(); ++i) {
+        const auto t = static_cast<std::size_t>(stars_flagged[i]);
+        if (t < result.flags.size()) result.flags[t] |= static_cast<std::uint32_t>(flag[i]);
+      }
+    }
+  }
+  SeriesStatistics statistics(estimators.size(),
+                              std::max<std::int64_t>(2, static_cast<std::int64_t>(scene.summary().exposures_per_bin)));
+  std::vector<float> deviation(static_cast<std::size_t>(mission.simulation.exposures));
+  for (std::size_t t = 0; t < estimators.size(); ++t) {
+    fits.read_pixels(*curves, static_cast<std::int64_t>(t) * mission.simulation.exposures, deviation);
+    statistics.add(t, 0, deviation);
+  }
+  result.series = statistics.summaries();
+  return result;
+}
+
+}  // namespace
+
+AssessResult analyse_run(const std::filesystem::path& folder, const ConfigurationSurroundings& overrides,
+                         const std::filesystem::path& output) {
+  const std::filesystem::path configuration_file = folder / "config.xml";
+  const std::filesystem::path light_curves = folder / "photometry" / "lightcurves.fits";
+  if (!std::filesystem::exists(configuration_file)) throw not_a_run(folder, "there is no config.xml in it");
+  if (!std::filesystem::exists(light_curves)) throw not_a_run(folder, "there is no photometry/lightcurves.fits in it");
+  std::vector<Problem> problems;
+  for (const std::string& override_text : overrides.overrides)
+    if (!override_text.starts_with("Analysis/"))
+      problems.push_back({.file = "--set",
+                          .value = override_text,
+                          .expected = "a parameter of Analysis",
+                          .message = "would need the exposures again: run assess instead"});
+  if (!problems.empty()) throw InputError(std::move(problems));
+
+  const ResolvedConfiguration configuration = read_configuration(configuration_file, overrides);
+  const PreparedRun run = prepare_run(configuration.mission);
+  const Ground ground = perfect_ground(*run.scene);
+  const std::vector<StarEstimator> estimators =
+      build_estimators(*run.scene->layout(), ground.model, configuration.mission.photometry);
+  const StreamResult stream = read_stream(light_curves, *run.scene, estimators);
+  create_folder(output);
+  const ReportedRun reported = report_run(
+      output,
+      {.configuration = configuration, .prepared = run, .ground = ground, .estimators = estimators, .stream = stream});
+  return {.folder = output, .report = reported.index, .verdict = reported.verdict, .timings = {}};
+}
+
+std::vector<std::filesystem::path> export_stars(const std::filesystem::path& folder, std::span<const std::string> ids,
+                                                const std::filesystem::path& output) {
+  const std::filesystem::path light_curves = folder / "photometry" / "lightcurves.fits";
+  if (!std::filesystem::exists(light_curves)) throw not_a_run(folder, "there is no photometry/lightcurves.fits in it");
+  const Mission mission = read_configuration(folder / "config.xml").mission;
+  const LightCurveHeader header{.exposures = mission.simulation.exposures,
+                                .cameras = mission.telescope.simulated_cameras,
+                                .start_mjd = mission.simulation.start_mjd,
+                                .cycle = mission.simulation.cycle.value(),
+                                .exposure_time = mission.simulation.exposure_time.value(),
+                                .history = {}};
+  create_folder(output);
+  std::vector<std::filesystem::path> files;
+  for (const std::string& id : ids) {
+    std::string name = id;
+    std::ranges::replace_if(
+        name, [](char c) { return c == '/' || c == ' '; }, '_');
+    const LightCurve curve = read_light_curve(light_curves.string(), id, 0);
+    files.push_back(output / fmt::format("lightcurve_{}.fits", name));
+    export_light_curve(files.back().string(), curve, header);
+  }
+  return files;
+}
+
+}  // namespace astroid

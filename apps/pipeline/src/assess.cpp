@@ -1,0 +1,92 @@
+#include <chrono>
+#include <utility>
+
+#include "astroid/core/atomic_file.hpp"
+#include "astroid/core/error.hpp"
+#include "astroid/pipeline/field.hpp"
+#include "astroid/pipeline/ground.hpp"
+#include "astroid/pipeline/run.hpp"
+#include "astroid/pipeline/run_record.hpp"
+#include "folders.hpp"
+#include "report_run.hpp"
+
+namespace astroid {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// What every run leaves: its configuration, plan and truth.
+void write_inputs(const std::filesystem::path& folder, const ResolvedConfiguration& configuration,
+                  const PreparedRun& run) {
+  write_text_file(folder / "config.xml", to_xml(configuration));
+  write_text_file(folder / "plan.txt", to_text(*run.plan, *run.scene));
+  write_text_file(folder / "plan.json", to_json(*run.plan, *run.scene));
+  create_folder(folder / "truth");
+  write_truth(folder / "truth" / "stars.csv", *run.scene);
+}
+
+}  // namespace
+
+AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions& options) {
+  const Clock::time_point begin = Clock::now();
+  ProductFolder folder(options.folder, options.existing);
+  const std::filesystem::path working = partial_path(folder.path());
+  const PreparedRun run = prepare_run(configuration.mission);
+  if (run.scene->targets().empty())
+    throw InputError(
+        Problem{.file = configuration.mission.field.catalogue,
+                .parameter = "Satellite/Pointing",
+                .expected = "a field with stars brighter than Photometry/TargetLimit on the computed pixels",
+                .message = "there is no target to assess"});
+  const Ground ground = perfect_ground(*run.scene);
+  const std::vector<StarEstimator> estimators =
+      build_estimators(*run.scene->layout(), ground.model, configuration.mission.photometry);
+  write_inputs(working, configuration, run);
+  const StreamResult stream = stream_exposures(
+      run.scene, run.plan, estimators, {.threads = options.threads, .folder = working, .progress = options.progress});
+  const Clock::time_point analysis_begin = Clock::now();
+  const ReportedRun reported = report_run(
+      working,
+      {.configuration = configuration, .prepared = run, .ground = ground, .estimators = estimators, .stream = stream});
+  write_run_record(folder, {.command_line = options.command_line,
+                            .threads = options.threads,
+                            .scene = run.scene.get(),
+                            .plan = run.plan.get(),
+                            .stream = &stream,
+                            .analyse_seconds = seconds_since(analysis_begin),
+                            .wall_seconds = seconds_since(begin),
+                            .warnings = reported.warnings});
+  const std::filesystem::path index = reported.index.lexically_relative(working);
+  folder.commit();
+  return {.folder = options.folder,
+          .report = options.folder / index,
+          .verdict = reported.verdict,
+          .timings = stream.timings};
+}
+
+StreamResult simulate(const ResolvedConfiguration& configuration, const RunOptions& options) {
+  const Clock::time_point begin = Clock::now();
+  ProductFolder folder(options.folder, options.existing);
+  const std::filesystem::path working = partial_path(folder.path());
+  const PreparedRun run = prepare_run(configuration.mission);
+  write_inputs(working, configuration, run);
+  StreamResult stream = stream_exposures(run.scene, run.plan, {},
+                                         {.threads = options.threads, .folder = working, .progress = options.progress});
+  const std::span<const std::string> notes = run.scene->notes();
+  write_run_record(folder, {.command_line = options.command_line,
+                            .threads = options.threads,
+                            .scene = run.scene.get(),
+                            .plan = run.plan.get(),
+                            .stream = &stream,
+                            .wall_seconds = seconds_since(begin),
+                            .warnings = {notes.begin(), notes.end()}});
+  folder.commit();
+  return stream;
+}
+
+}  // namespace astroid

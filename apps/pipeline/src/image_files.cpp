@@ -1,0 +1,231 @@
+#include "image_files.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "astroid/core/calendar.hpp"
+#include "astroid/core/fits_writer.hpp"
+#include "folders.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr int kSixteenBits = 16;
+constexpr double kSecondsPerDay = 86400.0;
+
+std::string file_name(int camera, std::int64_t exposure) {
+  return fmt::format("camera{}_{:06}", camera + 1, exposure);
+}
+
+/// Cards that every image of an exposure carries.
+std::vector<FitsCard> exposure_cards(const Scene& scene, int camera, std::int64_t exposure) {
+  const Mission& mission = scene.mission();
+  const double start =
+      mission.simulation.start_mjd + static_cast<double>(exposure) * mission.simulation.cycle.value() / kSecondsPerDay;
+  constexpr int kMilliseconds = 3;
+  return {{"TELESCOP", "ASTROID", "simulated"},
+          {"SIMULATE", true, "not flight data"},
+          {"CAMERA", camera + 1, "camera number"},
+          {"EXPOSURE", exposure, "exposure number, from 0"},
+          {"TIMESYS", "TDB", "time scale"},
+          {"DATE-OBS", iso8601_from_mjd(start, kMilliseconds), "start of the exposure"},
+          {"MJD-OBS", start, "[d] the same"},
+          {"EXPTIME", mission.simulation.exposure_time.value(), "[s] exposure time"},
+          {"SEED", static_cast<std::int64_t>(mission.simulation.seed), "of the random numbers"}};
+}
+
+/// Cards of a frame in ADU.
+std::vector<FitsCard> frame_cards(const FrameHeader& header) {
+  return {{"BUNIT", "adu", "unit of the pixels"},
+          {"GAIN", header.gain.value(), "[e-/adu] gain"},
+          {"RDNOISE", header.readout_noise.value(), "[e-] readout noise, rms"},
+          {"BIAS", header.bias.value(), "[adu] bias"},
+          {"SATURATE", header.saturation.value(), "[adu] saturation level"}};
+}
+
+/// Where a sub-image lies: its WCS and the detector pixel of its first one.
+std::vector<FitsCard> place_cards(const Scene& scene, const Rectangle& area) {
+  std::vector<FitsCard> cards = scene.projection()->fits_cards(area.x0, area.y0);
+  cards.emplace_back("LTV1", -area.x0, "image column = detector column + LTV1");
+  cards.emplace_back("LTV2", -area.y0, "image row = detector row + LTV2");
+  return cards;
+}
+
+bool is_cube(const PixelLayout& layout) {
+  return layout.regions().size() > 1;
+}
+
+/// The largest window; smaller ones, cut by the edge, are padded to its size.
+std::pair<int, int> cube_size(const PixelLayout& layout) {
+  int nx = 0;
+  int ny = 0;
+  for (const Rectangle& region : layout.regions()) {
+    nx = std::max(nx, region.nx);
+    ny = std::max(ny, region.ny);
+  }
+  return {nx, ny};
+}
+
+/// The planes of a layout as an image, or as a cube of windows with a table of where they lie.
+template <class Pixel, class Unit, class Convert>
+void write_plane(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber number, const Scene& scene,
+                 std::span<const FitsCard> cards, std::span<const std::string> history, Convert convert) {
+  using Stored = decltype(convert(Pixel{}));
+  const PixelLayout& layout = plane.layout();
+  if (!is_cube(layout)) {
+    const Rectangle& area = layout.regions()[0];
+    fits.begin_image(number, {area.nx, area.ny});
+    fits.cards(place_cards(scene, area));
+    fits.cards(cards);
+    for (const std::string& line : history) fits.history(line);
+    std::vector<Stored> row(static_cast<std::size_t>(area.nx));
+    for (int y = area.y0; y < area.y1(); ++y) {
+      std::ranges::transform(plane.view(0).row(y), row.begin(), convert);
+      fits.write_pixels(static_cast<std::int64_t>(y - area.y0) * area.nx, std::span<const Stored>(row));
+    }
+    return;
+  }
+  const auto [nx, ny] = cube_size(layout);
+  const auto count = static_cast<std::int64_t>(layout.regions().size());
+  fits.begin_image(number, {nx, ny, count});
+  fits.cards(cards);
+  for (const std::string& line : history) fits.history(line);
+  std::vector<Stored> window;
+  for (std::size_t r = 0; r < layout.regions().size(); ++r) {
+    const Rectangle& area = layout.regions()[r];
+    window.assign(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), Stored{});
+    for (int y = area.y0; y < area.y1(); ++y)
+      std::ranges::transform(plane.view(r).row(y), window.begin() + static_cast<std::ptrdiff_t>(y - area.y0) * nx,
+                             convert);
+    fits.write_pixels(static_cast<std::int64_t>(r) * nx * ny, std::span<const Stored>(window));
+  }
+  fits.begin_table({{.name = "ID", .text_width = 32},
+                    {.name = "X0", .number = FitsNumber::kInt32, .unit = "px"},
+                    {.name = "Y0", .number = FitsNumber::kInt32, .unit = "px"},
+                    {.name = "NX", .number = FitsNumber::kInt32, .unit = "px"},
+                    {.name = "NY", .number = FitsNumber::kInt32, .unit = "px"}},
+                   "WINDOWS", count);
+  std::vector<std::string> ids;
+  std::vector<std::int32_t> x0;
+  std::vector<std::int32_t> y0;
+  std::vector<std::int32_t> widths;
+  std::vector<std::int32_t> heights;
+  constexpr std::size_t kLongestId = 32;
+  for (std::size_t r = 0; r < layout.regions().size(); ++r) {
+    ids.push_back(scene.stars()[scene.targets()[r]].id.substr(0, kLongestId));
+    x0.push_back(layout.regions()[r].x0);
+    y0.push_back(layout.regions()[r].y0);
+    widths.push_back(layout.regions()[r].nx);
+    heights.push_back(layout.regions()[r].ny);
+  }
+  fits.write_column(0, 0, std::span<const std::string>(ids));
+  fits.write_column(1, 0, std::span<const std::int32_t>(x0));
+  fits.write_column(2, 0, std::span<const std::int32_t>(y0));
+  fits.write_column(3, 0, std::span<const std::int32_t>(widths));
+  fits.write_column(4, 0, std::span<const std::int32_t>(heights));
+}
+
+/// The map that a step has just written, in its own unit.
+void write_step(FitsWriter& fits, const EffectSpec& effect, const ExposureState& state, const Scene& scene,
+                std::span<const std::string> history) {
+  std::vector<FitsCard> cards = exposure_cards(scene, state.camera, state.exposure);
+  cards.emplace_back("STEP", std::string(effect.name), "effect after which this map was written");
+  const auto as_double = [](double v) { return v; };
+  if ((effect.writes & plane_bit::kDigital) != 0) {
+    cards.emplace_back("BUNIT", "adu", "digitised");
+    write_plane(fits, state.frame.pixels, FitsNumber::kFloat32, scene, cards, history, [](float v) { return v; });
+  } else if ((effect.writes & plane_bit::kAnalog) != 0) {
+    cards.emplace_back("BUNIT", "adu", "before digitising");
+    write_plane(fits, state.analog, FitsNumber::kFloat64, scene, cards, history, as_double);
+  } else if ((effect.writes & plane_bit::kSampled) != 0) {
+    cards.emplace_back("BUNIT", "electron", "drawn electrons");
+    write_plane(fits, state.sampled, FitsNumber::kFloat64, scene, cards, history, as_double);
+  } else {
+    cards.emplace_back("BUNIT", "electron", "expected electrons");
+    write_plane(fits, state.expected, FitsNumber::kFloat64, scene, cards, history, as_double);
+  }
+}
+
+}  // namespace
+
+std::vector<std::string> history_of(const Plan& plan, const Scene& scene) {
+  std::vector<std::string> lines;
+  std::istringstream text(to_text(plan, scene));
+  for (std::string line; std::getline(text, line);) {
+    // Times are of the machine, not of the product.
+    const bool has_time = line.find(" ms per exposure") != std::string::npos;
+    if (!line.empty() && !has_time) lines.push_back(line);
+  }
+  return lines;
+}
+
+Image<float, unit::Adu> largest_region(const Frame& frame) {
+  const PixelLayout& layout = frame.pixels.layout();
+  std::size_t largest = 0;
+  for (std::size_t r = 1; r < layout.regions().size(); ++r)
+    if (layout.regions()[r].size() > layout.regions()[largest].size()) largest = r;
+  Image<float, unit::Adu> image(layout.regions()[largest]);
+  const Rectangle& area = image.area();
+  for (int y = area.y0; y < area.y1(); ++y) std::ranges::copy(frame.pixels.view(largest).row(y), image.row(y).begin());
+  return image;
+}
+
+ImageFiles::ImageFiles(const Scene& scene, const Plan& plan, std::filesystem::path folder)
+    : scene_(scene), history_(history_of(plan, scene)), folder_(std::move(folder)) {}
+
+bool ImageFiles::writes(int /*camera*/, std::int64_t exposure) const {
+  if (folder_.empty()) return false;
+  const OutputSettings& output = scene_.mission().output;
+  switch (output.images) {
+    case ImageOutput::kNone:
+      return false;
+    case ImageOutput::kFirst:
+      return exposure == 0;
+    case ImageOutput::kEvery:
+      return exposure % output.images_every == 0;
+    case ImageOutput::kAll:
+      return true;
+  }
+  return false;
+}
+
+bool ImageFiles::dumps(int /*camera*/, std::int64_t exposure) const {
+  const std::vector<std::int64_t>& asked = scene_.mission().output.dump_steps;
+  return !folder_.empty() && std::ranges::find(asked, exposure) != asked.end();
+}
+
+void ImageFiles::write(const Frame& frame) const {
+  const std::filesystem::path folder = folder_ / "images";
+  create_folder(folder);
+  FitsWriter fits(folder / (file_name(frame.header.camera, frame.header.exposure) + ".fits"));
+  std::vector<FitsCard> cards = exposure_cards(scene_, frame.header.camera, frame.header.exposure);
+  for (FitsCard& card : frame_cards(frame.header)) cards.push_back(std::move(card));
+  if (scene_.mission().ccd.adc_bits <= kSixteenBits) {
+    write_plane(fits, frame.pixels, FitsNumber::kUnsigned16, scene_, cards, history_,
+                [](float v) { return static_cast<std::uint16_t>(v); });
+  } else {
+    write_plane(fits, frame.pixels, FitsNumber::kInt32, scene_, cards, history_,
+                [](float v) { return static_cast<std::int32_t>(v); });
+  }
+  fits.commit();
+}
+
+StepObserver ImageFiles::step_writer(int camera, std::int64_t exposure) const {
+  const std::filesystem::path folder = folder_ / "steps";
+  create_folder(folder);
+  return [this, folder, stem = file_name(camera, exposure), number = 0](const EffectSpec& effect,
+                                                                        const ExposureState& state) mutable {
+    if (effect.level == EffectLevel::kPointing) return;  // no map changes
+    FitsWriter fits(folder / fmt::format("{}_{:02}_{}.fits", stem, ++number, effect.name));
+    write_step(fits, effect, state, scene_, history_);
+    fits.commit();
+  };
+}
+
+}  // namespace astroid

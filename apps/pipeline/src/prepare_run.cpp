@@ -1,0 +1,27 @@
+#include "astroid/analysis/budget.hpp"
+#include "astroid/pipeline/field.hpp"
+#include "astroid/pipeline/ground.hpp"
+#include "astroid/pipeline/run.hpp"
+
+namespace astroid {
+
+PreparedRun prepare_run(const Mission& mission) {
+  PreparedRun run;
+  run.scene = std::make_shared<const Scene>(mission, load_field(mission));
+  run.plan = std::make_shared<const Plan>(make_plan(*run.scene));
+  return run;
+}
+
+Ground perfect_ground(const Scene& scene) {
+  Ground ground;
+  ground.stars = field_stars(scene);
+  ground.model.stars = ground.stars;
+  ground.model.targets = scene.targets();
+  ground.model.psf = &scene.psf();
+  ground.model.noise = expected_pixel_noise(scene.mission());
+  ground.model.gain = scene.mission().ccd.gain;
+  ground.model.bias = scene.mission().ccd.bias;
+  return ground;
+}
+
+}  // namespace astroid

@@ -1,0 +1,191 @@
+#include "report_run.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "astroid/analysis/contamination.hpp"
+#include "astroid/analysis/target_metrics.hpp"
+#include "astroid/analysis/verdict.hpp"
+#include "astroid/photometry/image_photometry.hpp"
+#include "astroid/photometry/light_curves.hpp"
+#include "astroid/pipeline/field.hpp"
+#include "astroid/pipeline/motion.hpp"
+#include "astroid/pipeline/run_record.hpp"
+#include "astroid/reports/report.hpp"
+#include "folders.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr double kSecondsPerHour = 3600.0;
+constexpr std::size_t kListedNeighbours = 3;
+constexpr double kNeighbourReach = 12.0;  ///< px; farther neighbours put no light worth a line into an aperture
+constexpr std::size_t kShownLightCurves = 6;
+
+/// Rows of targets.csv.
+std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup& setup) {
+  const Scene& scene = *run.prepared.scene;
+  const std::vector<TruthStar> truth = truth_of(scene);
+  const std::vector<StarMotion> motions = target_motions(scene);
+  std::vector<TargetMetrics> targets;
+  targets.reserve(run.estimators.size());
+  for (std::size_t t = 0; t < run.estimators.size(); ++t) {
+    const StarEstimator& estimator = run.estimators[t];
+    TargetMetrics target = predict_target(truth[estimator.star], estimator, motions[t], setup);
+    add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
+
+/// photometry/sources.csv: the mean flux of every target over the run.
+void write_mean_sources(const std::filesystem::path& path, const MeasuredRun& run,
+                        std::span<const TargetMetrics> targets) {
+  const Scene& scene = *run.prepared.scene;
+  const double background = expected_pixel_noise(scene.mission()).background;
+  std::vector<SourceMeasurement> sources;
+  sources.reserve(targets.size());
+  for (std::size_t t = 0; t < targets.size(); ++t) {
+    const TargetMetrics& target = targets[t];
+    const SceneStar& star = scene.stars()[run.estimators[t].star];
+    const double ratio = target.nsr_exposure_measured.value / target.nsr_exposure;
+    sources.push_back({.id = target.id,
+                       .x = target.x,
+                       .y = target.y,
+                       .ra = star.sky.ra,
+                       .dec = star.sky.dec,
+                       .flux = target.flux_measured,
+                       .flux_err = target.flux_err,
+                       .mag = target.mag_measured,
+                       .mag_err = target.mag_err,
+                       .background = background,
+                       .snr = target.flux_measured / target.flux_err,
+                       .chi2 = ratio * ratio,
+                       .flags = target.flags});
+  }
+  write_sources(path, sources);
+}
+
+std::vector<ContaminationRow> contamination_rows(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
+  const auto neighbours = strongest_contaminants(run.estimators, *run.prepared.scene->layout(), run.ground.model,
+                                                 kNeighbourReach, kListedNeighbours);
+  std::vector<ContaminationRow> rows;
+  rows.reserve(targets.size());
+  for (std::size_t t = 0; t < targets.size(); ++t)
+    rows.push_back({.id = targets[t].id,
+                    .mag = targets[t].mag,
+                    .spr_tot = targets[t].spr_tot,
+                    .delta_mag = targets[t].causes.contamination,
+                    .strongest = neighbours[t]});
+  return rows;
+}
+
+/// Magnitudes of the analytic budget: every half magnitude that targets have.
+std::vector<BudgetRow> budget_rows(const Scene& scene) {
+  double bright = std::numeric_limits<double>::infinity();
+  double faint = -bright;
+  for (const std::size_t t : scene.targets()) {
+    bright = std::min(bright, scene.stars()[t].magnitude.value());
+    faint = std::max(faint, scene.stars()[t].magnitude.value());
+  }
+  std::vector<double> magnitudes;
+  for (double m = std::floor(2.0 * bright) / 2.0; m <= faint + 0.5; m += 0.5) magnitudes.push_back(m);
+  return analytic_budget(scene.mission(), scene.psf(), magnitudes);
+}
+
+/// Light curves of clean targets spread over the magnitudes, read back from the file.
+std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path& folder,
+                                                    std::span<const TargetMetrics> targets,
+                                                    std::span<const double> reference) {
+  const std::filesystem::path file = folder / "photometry" / "lightcurves.fits";
+  std::vector<std::size_t> clean;
+  for (std::size_t t = 0; t < targets.size(); ++t)
+    if (is_clean(targets[t])) clean.push_back(t);
+  if (clean.empty() || !std::filesystem::exists(file)) return {};
+  std::ranges::stable_sort(clean, {}, [&](std::size_t t) { return targets[t].mag; });
+  std::vector<ExampleLightCurve> examples;
+  const std::size_t count = std::min(kShownLightCurves, clean.size());
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t t = clean[count == 1 ? 0 : i * (clean.size() - 1) / (count - 1)];
+    const LightCurve curve = read_light_curve(file.string(), targets[t].id, 0);
+    ExampleLightCurve example{.id = targets[t].id, .mag = targets[t].mag, .hours = {}, .deviation = {}};
+    for (std::size_t k = 0; k < curve.time.size(); ++k) {
+      example.hours.push_back(curve.time[k] / kSecondsPerHour);
+      example.deviation.push_back(static_cast<float>(curve.flux[k] / reference[t] - 1.0));
+    }
+    examples.push_back(std::move(example));
+  }
+  return examples;
+}
+
+std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
+  const Scene& scene = *run.prepared.scene;
+  std::vector<std::string> warnings(scene.notes().begin(), scene.notes().end());
+  for (const std::string& note : run.prepared.plan->approximations) warnings.push_back(note);
+  const auto unmeasured = std::ranges::count_if(targets, [](const TargetMetrics& t) { return t.exposures == 0; });
+  if (unmeasured > 0)
+    warnings.push_back(
+        fmt::format("{} of {} targets could not be measured; their flags say why", unmeasured, targets.size()));
+  const auto saturated = std::ranges::count_if(
+      targets, [](const TargetMetrics& t) { return (t.flags & measurement_flag::kSaturated) != 0; });
+  if (saturated > 0) warnings.push_back(fmt::format("{} of {} targets are saturated", saturated, targets.size()));
+  if (run.stream.lost_electrons > 0.0)
+    warnings.push_back(
+        fmt::format("blooming lost {:.3g} e- through the edges of the computed pixels", run.stream.lost_electrons));
+  if (run.stream.clipped_pixels > 0)
+    warnings.push_back(fmt::format("the ADC clipped {} pixel values", run.stream.clipped_pixels));
+  return warnings;
+}
+
+}  // namespace
+
+ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run) {
+  const Scene& scene = *run.prepared.scene;
+  const Mission& mission = scene.mission();
+  const RunSetup setup = run_setup(mission);
+  const std::vector<TargetMetrics> targets = target_metrics(run, setup);
+  create_folder(folder / "photometry");
+  write_mean_sources(folder / "photometry" / "sources.csv", run, targets);
+  const std::vector<ContaminationRow> contamination = contamination_rows(run, targets);
+  const std::vector<BudgetRow> budget = budget_rows(scene);
+
+  ReportedRun reported;
+  const double bin_hours = mission.analysis.bin.value() / kSecondsPerHour;
+  ReportInput input;
+  input.title = fmt::format("{} targets around RA {:.4f}°, Dec {:.4f}°", targets.size(), mission.satellite.ra.value(),
+                            mission.satellite.dec.value());
+  input.requirement = plato_requirement(mission.telescope.cameras);
+  input.verdict = verdict(targets, setup, bin_hours, input.requirement);
+  input.setup = setup;
+  input.bin_hours = bin_hours;
+  input.passband = mission.telescope.zero_point_passband;
+  input.targets = targets;
+  input.contamination = contamination;
+  input.budget = budget;
+  input.plan = to_text(*run.prepared.plan, scene);
+  for (const ResolvedParameter& p : run.configuration.parameters)
+    input.configuration.push_back({p.path, p.value, p.unit, p.origin});
+  for (const ComponentVersion& component : component_versions())
+    input.provenance.emplace_back(component.name, component.version);
+  input.provenance.emplace_back("seed", fmt::format("{}", mission.simulation.seed));
+  input.warnings = warnings_of(run, targets);
+  if (run.stream.first_frame.size() > 0) {
+    input.image = run.stream.first_frame.view();
+    input.image_caption =
+        fmt::format("Exposure 0 of camera 1, {} x {} px", run.stream.first_frame.nx(), run.stream.first_frame.ny());
+  }
+  input.light_curves = example_light_curves(folder, targets, run.stream.reference);
+  const WrittenReport written = write_report(folder, input);
+  reported.index = written.index;
+  reported.verdict = input.verdict;
+  reported.warnings = input.warnings;
+  reported.warnings.insert(reported.warnings.end(), written.problems.begin(), written.problems.end());
+  return reported;
+}
+
+}  // namespace astroid

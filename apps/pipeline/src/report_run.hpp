@@ -1,0 +1,33 @@
+// From what a run measured to its tables, figures, page and verdict.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "astroid/core/configuration.hpp"
+#include "astroid/photometry/estimator.hpp"
+#include "astroid/pipeline/ground.hpp"
+#include "astroid/pipeline/run.hpp"
+
+namespace astroid {
+
+/// What the analysis is given.
+struct MeasuredRun {
+  const ResolvedConfiguration& configuration;
+  const PreparedRun& prepared;
+  const Ground& ground;
+  const std::vector<StarEstimator>& estimators;
+  const StreamResult& stream;
+};
+
+struct ReportedRun {
+  std::filesystem::path index;
+  std::vector<std::string> verdict;
+  std::vector<std::string> warnings;
+};
+
+/// Analyses a run and writes analysis/, report/ and photometry/sources.csv into `folder`. @throws EnvironmentError
+ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run);
+
+}  // namespace astroid

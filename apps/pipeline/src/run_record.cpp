@@ -1,0 +1,132 @@
+#include "astroid/pipeline/run_record.hpp"
+
+#include <fitsio.h>
+#include <fmt/format.h>
+#include <gsl/gsl_version.h>
+#include <libxml/xmlversion.h>
+#include <sys/resource.h>
+#include <unistd.h>
+#include <wcslib/wcslib.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "astroid/core/atomic_file.hpp"
+
+namespace astroid {
+
+namespace {
+
+/// First line of what a program prints, or "missing".
+std::string first_line_of(const char* command) {
+  FILE* pipe = popen(command, "r");  // NOLINT(cert-env33-c): fixed commands of ours
+  if (pipe == nullptr) return "missing";
+  std::array<char, 256> line{};
+  const bool read = std::fgets(line.data(), static_cast<int>(line.size()), pipe) != nullptr;
+  pclose(pipe);
+  std::string text = read ? line.data() : "";
+  while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
+  return text.empty() ? "missing" : text;
+}
+
+std::string host_name() {
+  std::array<char, 256> name{};
+  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
+}
+
+std::string utc_now() {
+  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
+  std::tm utc{};
+  gmtime_r(&now, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+std::string processor_name() {
+  FILE* file = std::fopen("/proc/cpuinfo", "r");
+  if (file == nullptr) return "unknown";
+  std::array<char, 512> line{};
+  std::string name = "unknown";
+  while (std::fgets(line.data(), static_cast<int>(line.size()), file) != nullptr) {
+    const std::string text = line.data();
+    if (!text.starts_with("model name")) continue;
+    const std::size_t colon = text.find(':');
+    if (colon != std::string::npos) name = text.substr(colon + 2, text.size() - colon - 3);
+    break;
+  }
+  std::fclose(file);
+  return name;
+}
+
+}  // namespace
+
+std::vector<ComponentVersion> component_versions() {
+  float cfitsio = 0.0F;
+  ffvers(&cfitsio);
+  return {{"astroid", ASTROID_VERSION},
+          {"compiler", __VERSION__},
+          {"CFITSIO", fmt::format("{:.2f}", cfitsio)},
+          {"WCSLIB", wcslib_version(nullptr)},
+          {"GSL", gsl_version},
+          {"libxml2", LIBXML_DOTTED_VERSION},
+          {"fmt", fmt::format("{}.{}.{}", FMT_VERSION / 10000, FMT_VERSION / 100 % 100, FMT_VERSION % 100)},
+          {"gnuplot", first_line_of("gnuplot --version 2>/dev/null")}};
+}
+
+double peak_memory_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  constexpr double kKibi = 1024.0;
+  return kKibi * static_cast<double>(usage.ru_maxrss);
+}
+
+void write_run_record(const ProductFolder& folder, const RunRecord& record) {
+  nlohmann::ordered_json json;
+  json["program"] = "astroid";
+  json["version"] = ASTROID_VERSION;
+  json["written"] = utc_now();
+  json["host"] = {
+      {"name", host_name()}, {"processor", processor_name()}, {"processors", std::thread::hardware_concurrency()}};
+  for (const ComponentVersion& component : component_versions()) json["components"][component.name] = component.version;
+  json["command_line"] = record.command_line;
+  json["threads"] = record.threads;
+  if (record.scene != nullptr) {
+    json["seed"] = record.scene->mission().simulation.seed;
+    json["random_numbers"] = "Philox4x32-10, addressed (docs/random-numbers.md)";
+    json["exposures"] = record.scene->mission().simulation.exposures;
+    json["cameras"] = {{"observing", record.scene->mission().telescope.cameras},
+                       {"simulated", record.scene->mission().telescope.simulated_cameras}};
+    json["stars"] = record.scene->stars().size();
+    json["targets"] = record.scene->targets().size();
+    json["pixels"] = record.scene->layout()->size();
+  }
+  if (record.stream != nullptr) {
+    const StreamTimings& t = record.stream->timings;
+    json["timings_seconds"] = {
+        {"prepare", t.prepare},     {"simulate_cpu", t.simulate},        {"measure_cpu", t.measure},
+        {"images_cpu", t.images},   {"statistics", t.statistics},        {"light_curves", t.light_curves},
+        {"exposures_wall", t.wall}, {"analyse", record.analyse_seconds}, {"all", record.wall_seconds}};
+    if (record.plan != nullptr) {
+      const double exposures = static_cast<double>(record.scene->mission().simulation.exposures) *
+                               record.scene->mission().telescope.simulated_cameras;
+      json["seconds_per_exposure"] = {{"predicted", record.plan->seconds_per_exposure},
+                                      {"measured", t.simulate / exposures}};
+    }
+    for (const auto& [name, seconds] : record.stream->effect_seconds) json["effects_cpu_seconds"][name] = seconds;
+    json["images_written"] = record.stream->images_written;
+    json["electrons_lost_by_blooming"] = record.stream->lost_electrons;
+    json["pixels_clipped_by_adc"] = record.stream->clipped_pixels;
+  }
+  json["peak_memory_bytes"] = peak_memory_bytes();
+  json["warnings"] = record.warnings;
+  for (const Product& product : folder.products())
+    json["products"].push_back({{"path", product.path}, {"bytes", product.bytes}, {"sha256", product.sha256}});
+  write_text_file(folder.file("run.json"), json.dump(2) + "\n");
+}
+
+}  // namespace astroid
