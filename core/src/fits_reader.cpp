@@ -19,7 +19,7 @@ namespace {
 // How much larger than the file an image compressed by tiles may be: Rice needs at least a bit for 32 equal pixels of 8
 // bytes, so a header that promises more is damaged.
 constexpr double kLargestCompression = 2048.0;
-constexpr int kBitsPerByte = 8;
+constexpr double kBitsPerByte = 8.0;
 
 bool equal_but_for_case(const std::string& a, const std::string& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {

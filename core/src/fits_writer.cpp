@@ -354,6 +354,7 @@ int FitsWriter::begin_table(const std::vector<FitsColumn>& columns, const std::s
   }
   const auto pointers = [](std::vector<std::string>& texts) {
     std::vector<char*> result;
+    result.reserve(texts.size());
     for (std::string& text : texts) result.push_back(text.data());
     return result;
   };

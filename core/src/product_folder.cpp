@@ -120,7 +120,7 @@ void ProductFolder::unlock() {
 }
 
 fs::path ProductFolder::file(const fs::path& relative) const {
-  const fs::path target = working() / relative;
+  fs::path target = working() / relative;
   on_disk(target, [&] { fs::create_directories(target.parent_path()); });
   return target;
 }

@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <mutex>
 #include <stdexcept>
@@ -107,10 +106,10 @@ WcsPointer make_wcs(const CameraPointing& p) {
   result->crval[0] = wrap_degrees(p.axis.ra);
   result->crval[1] = p.axis.dec;
   result->lonpole = 180.0;  // deg; said explicitly, for its default jumps to 0 at the pole
-  for (int i = 0; i < 2; ++i) {
-    std::strcpy(result->ctype[i], fmt::format("{}-{}", i == 0 ? "RA--" : "DEC-", p.projection).c_str());
-    std::strcpy(result->cunit[i], "deg");
-  }
+  const auto set_text = [](char* field, const std::string& text) { field[text.copy(field, text.size())] = '\0'; };
+  set_text(result->ctype[0], "RA---" + p.projection);
+  set_text(result->ctype[1], "DEC--" + p.projection);
+  for (int i = 0; i < 2; ++i) set_text(result->cunit[i], "deg");
   if (const int set = wcsset(result.get()); set != 0) throw std::runtime_error(wcs_message(set));
   return result;
 }

@@ -41,7 +41,7 @@ CameraPointing pointing() {
 
 // One file with everything that ASTROID writes.
 std::filesystem::path write_example(const std::filesystem::path& folder) {
-  const auto path = folder / "example.fits";
+  auto path = folder / "example.fits";
   FitsWriter writer(path);
   writer.begin_image(FitsNumber::kUnsigned16, {3, 2});
   writer.cards(SkyProjection(pointing()).fits_cards());
@@ -132,8 +132,10 @@ for line in open(sys.argv[2]):
   const SkyProjection projection(pointing());
   std::vector<SkyPosition> stars;
   std::string list;
-  for (double x = 0.0; x <= 4500.0; x += 450.0) {
-    for (double y = 0.0; y <= 4500.0; y += 450.0) {
+  for (int i = 0; i <= 10; ++i) {
+    for (int k = 0; k <= 10; ++k) {
+      const double x = 450.0 * i;
+      const double y = 450.0 * k;
       stars.push_back(projection.to_sky({x, y}));
       char line[80];
       std::snprintf(line, sizeof line, "%.17g %.17g\n", stars.back().ra, stars.back().dec);
