@@ -75,8 +75,9 @@ TEST(OptimalMask, IsASymmetricSetForASymmetricStar) {
     double moment_x = 0.0;
     double moment_y = 0.0;
     for (const EstimatorTerm& term : star.terms) {
-      moment_x += static_cast<double>(term.pixel % 25U) - 12.0;
-      moment_y += static_cast<double>(term.pixel / 25U) - 12.0;
+      const std::uint32_t row = term.pixel / 25U;
+      moment_x += static_cast<double>(term.pixel - 25U * row) - 12.0;
+      moment_y += static_cast<double>(row) - 12.0;
     }
     EXPECT_EQ(moment_x, 0.0) << magnitude;
     EXPECT_EQ(moment_y, 0.0) << magnitude;

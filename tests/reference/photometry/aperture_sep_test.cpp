@@ -53,7 +53,7 @@ TEST(AperturePhotometry, SumsLikeSep) {
       const int x = box.x0 + static_cast<int>(i) % box.nx;
       const int y = box.y0 + static_cast<int>(i) / box.nx;
       if (x >= 0 && x < kColumns && y >= 0 && y < kRows)
-        sum += overlap[i] * image[static_cast<std::size_t>(y * kColumns + x)];
+        sum += overlap[i] * image[static_cast<std::size_t>(y) * kColumns + static_cast<std::size_t>(x)];
     }
     EXPECT_NEAR(sum / expected, 1.0, 1e-5) << circle.radius << " at " << circle.centre.x << ", " << circle.centre.y;
   }

@@ -9,6 +9,7 @@ namespace {
 
 TEST(CellGrid, FindsWhatABruteForceSearchFinds) {
   std::vector<Rectangle> rectangles;
+  rectangles.reserve(300);
   for (int i = 0; i < 300; ++i)
     rectangles.push_back({(i * 37) % 211 - 20, (i * 53) % 173 - 30, i % 7, 1 + (i * 3) % (i % 50 == 0 ? 90 : 11)});
   const detail::CellGrid grid(rectangles);

@@ -13,7 +13,7 @@ namespace astroid {
 namespace {
 
 std::filesystem::path write_float_image(const test::TemporaryFolder& folder, const std::vector<FitsCard>& cards) {
-  const auto path = folder.path() / "image.fits";
+  auto path = folder.path() / "image.fits";
   FitsWriter writer(path);
   writer.begin_image(FitsNumber::kFloat32, {3, 2});
   writer.cards(cards);
