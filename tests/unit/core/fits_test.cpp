@@ -155,12 +155,13 @@ TEST(Fits, ImagesThatGrowTogetherAreWrittenInBlocks) {
   FitsWriter writer(path);
   writer.begin_image(FitsNumber::kUnsigned8, {});
   std::vector<int> cameras;
+  cameras.reserve(2);
   for (int camera = 0; camera < 2; ++camera) {
     cameras.push_back(
         writer.begin_large_image(FitsNumber::kFloat32, {kExposures, kStars}, "CAMERA" + std::to_string(camera + 1)));
   }
   writer.begin_table({{.name = "FLAGS", .number = FitsNumber::kInt32}}, "FLAGS");
-  const auto value = [](int camera, std::int64_t star, std::int64_t exposure) {
+  const auto value = [](std::int64_t camera, std::int64_t star, std::int64_t exposure) {
     return static_cast<float>(camera * 100000 + star * 10000 + exposure);
   };
   for (std::int64_t first = 0; first < kExposures; first += kBlock) {
@@ -330,7 +331,7 @@ TEST(Fits, AFullDiskIsReportedAndLeavesNothing) {
       FitsWriter writer(path);
       writer.begin_image(FitsNumber::kFloat32, {1000, 1000});
       const std::vector<float> row(1000, 1.0F);
-      for (int y = 0; y < 1000; ++y) writer.write_pixels(y * 1000, row);
+      for (std::int64_t y = 0; y < 1000; ++y) writer.write_pixels(y * 1000, row);
       writer.commit();
     };
     EXPECT_THAT(write, ThrowsMessage<EnvironmentError>(HasSubstr("big.fits: ")));
@@ -454,7 +455,7 @@ TEST(FitsReader, ReadsOneFileFromSeveralThreads) {
   const auto path = folder.path() / "image.fits";
   FitsWriter writer(path);
   writer.begin_image(FitsNumber::kFloat64, {64, 64});
-  std::vector<double> values(64 * 64);
+  std::vector<double> values(4096);
   std::iota(values.begin(), values.end(), 0.0);
   writer.write_pixels(0, values);
   writer.commit();

@@ -1,5 +1,6 @@
 #include "astroid/core/wcs.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -40,12 +41,13 @@ std::string header_of(const SkyProjection& projection) {
                                     "NAXIS2  =                 4510"};
   for (const FitsCard& card : projection.fits_cards()) {
     std::string value;
-    if (const auto* text = std::get_if<std::string>(&card.value)) value = "'" + *text + "'";
+    if (const auto* text = std::get_if<std::string>(&card.value)) value = fmt::format("'{}'", *text);
     if (const auto* number = std::get_if<double>(&card.value)) value = shortest_text(*number);
     if (const auto* number = std::get_if<std::int64_t>(&card.value)) value = std::to_string(*number);
     std::string key = card.key;
     key.resize(8, ' ');
-    cards.push_back(key + "= " + value);
+    key += "= ";
+    cards.push_back(key + value);
   }
   cards.emplace_back("END");
   return header_text(cards);
@@ -77,9 +79,16 @@ PixelPosition closed_form(const CameraPointing& p, SkyPosition star) {
           p.axis_pixel.y + u * std::sin(roll) + v * std::cos(roll)};
 }
 
+struct Turn {  // arcsec
+  double yaw = 0.0;
+  double pitch = 0.0;
+  double roll = 0.0;
+};
+
 // The pointing after turning the camera by angles (arcsec) so that stars move by +yaw along x and +pitch along y.
 // Composes the directions of the camera's own axes, independently of the code under test.
-CameraPointing turned(const CameraPointing& p, double yaw, double pitch, double roll) {
+CameraPointing turned(const CameraPointing& p, const Turn& turn) {
+  const auto& [yaw, pitch, roll] = turn;
   const double a = p.axis.ra * kPi / 180.0;
   const double d = p.axis.dec * kPi / 180.0;
   const double r = p.roll.value() * kPi / 180.0;
@@ -353,14 +362,15 @@ TEST(AttitudeJacobian, AgreesWithAPointingThatIsTurned) {
     const auto j = projection.attitude_jacobian(star);
     ASSERT_TRUE(j);
     const double h = 60.0;  // arcsec; the second-order term of a central difference is below 1e-8 of the scale
-    const auto slope = [&](double yaw, double pitch, double roll) {
-      const PixelPosition plus = closed_form(turned(pointing, yaw, pitch, roll), star);
-      const PixelPosition minus = closed_form(turned(pointing, -yaw, -pitch, -roll), star);
+    const auto slope = [&](const Turn& turn) {
+      const Turn back{-turn.yaw, -turn.pitch, -turn.roll};
+      const PixelPosition plus = closed_form(turned(pointing, turn), star);
+      const PixelPosition minus = closed_form(turned(pointing, back), star);
       return PixelPosition{(plus.x - minus.x) / (2.0 * h), (plus.y - minus.y) / (2.0 * h)};
     };
-    const PixelPosition yaw = slope(h, 0.0, 0.0);
-    const PixelPosition pitch = slope(0.0, h, 0.0);
-    const PixelPosition roll = slope(0.0, 0.0, h);
+    const PixelPosition yaw = slope({.yaw = h});
+    const PixelPosition pitch = slope({.pitch = h});
+    const PixelPosition roll = slope({.roll = h});
     const double tolerance = 5e-8 / 15.0;
     EXPECT_NEAR(j->dx_dyaw, yaw.x, tolerance) << code;
     EXPECT_NEAR(j->dy_dyaw, yaw.y, tolerance) << code;
