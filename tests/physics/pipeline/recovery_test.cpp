@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <thread>
 
 #include "astroid/pipeline/exposure_stream.hpp"
 #include "astroid/pipeline/ground.hpp"
@@ -35,9 +34,7 @@ Bias bias_of(double electrons, PhotometryMethod method, BackgroundMethod backgro
   const auto plan = std::make_shared<const Plan>(make_plan(*scene));
   const Ground ground = perfect_ground(*scene);
   const std::vector<StarEstimator> estimators = build_estimators(*scene->layout(), ground.model, mission.photometry);
-  const StreamResult result = stream_exposures(
-      scene, plan, estimators,
-      {.threads = static_cast<int>(std::thread::hardware_concurrency()), .folder = {}, .progress = {}});
+  const StreamResult result = stream_exposures(scene, plan, estimators, {.threads = 0, .folder = {}, .progress = {}});
   Bias bias;
   const auto n = static_cast<double>(estimators.size());
   double squares = 0.0;
@@ -64,7 +61,9 @@ TEST_P(Recovery, FaintAndBrightStarsAreUnbiased) {
     EXPECT_LT(std::abs(z), 3.5);
     // Where three standard errors allow the statement, the magnitude is right to a millimagnitude.
     constexpr double kMillimagnitude = 0.921e-3;
-    if (3.0 * bias.error < kMillimagnitude) EXPECT_LT(std::abs(bias.mean), kMillimagnitude);
+    if (3.0 * bias.error < kMillimagnitude) {
+      EXPECT_LT(std::abs(bias.mean), kMillimagnitude);
+    }
   }
 }
 
@@ -73,8 +72,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, Recovery,
                                          Case{"mask local", PhotometryMethod::kMask, BackgroundMethod::kLocal},
                                          Case{"aperture local", PhotometryMethod::kAperture, BackgroundMethod::kLocal},
                                          Case{"weighted known", PhotometryMethod::kWeighted, BackgroundMethod::kKnown}),
-                         [](const testing::TestParamInfo<Case>& info) {
-                           std::string name = info.param.name;
+                         [](const testing::TestParamInfo<Case>& parameter) {
+                           std::string name = parameter.param.name;
                            name[name.find(' ')] = '_';
                            return name;
                          });
