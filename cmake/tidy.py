@@ -9,10 +9,12 @@ usage: cmake/tidy.py [--all] [--deep] [--jobs N] [PART_OF_A_PATH...]
 
 import argparse
 import concurrent.futures
+import functools
 import hashlib
 import json
 import os
 import pathlib
+import re
 import shlex
 import subprocess
 import sys
@@ -22,6 +24,7 @@ ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build" / "tidy"
 TIDY = "clang-tidy-14"
 DEEP_CHECKS = "clang-analyzer-*,-clang-analyzer-security.FloatLoopCounter,-clang-analyzer-security.insecureAPI.*"
+INCLUDE = re.compile(r'^\s*#\s*include\s*"([^"]+)"', re.MULTILINE)
 STAMPS = pathlib.Path(os.environ.get("XDG_CACHE_HOME", pathlib.Path.home() / ".cache")) / "astroid-tidy"
 
 
@@ -43,14 +46,24 @@ def project_entries(commands, parts):
                 yield entry
 
 
+@functools.cache
+def quoted_includes(path):
+    return INCLUDE.findall(path.read_text(errors="replace"))
+
+
 def headers_of(entry):
-    """The project's files that a source includes, itself among them."""
-    arguments = shlex.split(entry["command"])
-    out = arguments.index("-o")
-    arguments = arguments[:out] + arguments[out + 2:] + ["-MM", "-MT", "x"]
-    listing = subprocess.run(arguments, cwd=entry["directory"], capture_output=True, text=True, check=True).stdout
-    paths = {pathlib.Path(entry["directory"], word).resolve() for word in listing.replace("\\\n", " ").split()[1:]}
-    return sorted(path for path in paths if path.is_relative_to(ROOT))
+    """The project's files that a source may include, itself among them, as quoted includes say, whatever #if says."""
+    folders = [pathlib.Path(word[2:]) for word in shlex.split(entry["command"]) if word.startswith("-I")]
+    found, waiting = set(), [pathlib.Path(entry["file"])]
+    while waiting:
+        path = waiting.pop()
+        if path in found:
+            continue
+        found.add(path)
+        for name in quoted_includes(path):
+            waiting += [candidate for candidate in ((folder / name).resolve() for folder in (path.parent, *folders))
+                        if candidate.is_relative_to(ROOT) and candidate.is_file()]
+    return sorted(found)
 
 
 def stamp_of(entry, common):
@@ -63,10 +76,7 @@ def stamp_of(entry, common):
 
 def check(entry, common, command, ignore_stamps):
     """Returns what clang-tidy says of one source, '' when it has nothing to say."""
-    try:
-        stamp = stamp_of(entry, common)
-    except subprocess.CalledProcessError as failure:
-        return f"{entry['file']}: does not compile\n{failure.stderr}"
+    stamp = stamp_of(entry, common)
     if stamp.exists() and not ignore_stamps:
         stamp.touch()
         return ""

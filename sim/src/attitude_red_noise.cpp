@@ -63,8 +63,8 @@ class RedNoiseAttitude final : public AttitudeModel {
   }
 
   [[nodiscard]] int steps_for(double fraction) const override {
-    // rms error of the mean over T from midpoints dt apart: s dt / sqrt(6 tau T) for dt << tau. @source SCIENCE
-    // F29, 4.4
+    // rms error of the mean over T from midpoints dt apart: s dt / sqrt(6 tau T) for dt << tau. From the
+    // covariance of @source F29
     const double by_error = fraction * det::sqrt(6.0 * timescale_ * exposure_);
     const double longest = std::min(by_error, 0.5 * timescale_);
     if (!(longest > 0.0)) return kMaxSteps;
