@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <regex>
 #include <utility>
 
 #include "astroid/analysis/verdict.hpp"
@@ -97,6 +96,17 @@ std::vector<std::string> html_errors(const std::string& page) {
   return errors;
 }
 
+/// The values of an attribute, in the order of the page.
+std::vector<std::string> attribute_values(const std::string& page, const std::string& name) {
+  const std::string begin = " " + name + "=\"";
+  std::vector<std::string> values;
+  for (std::size_t at = page.find(begin); at != std::string::npos; at = page.find(begin, at)) {
+    at += begin.size();
+    values.push_back(page.substr(at, page.find('"', at) - at));
+  }
+  return values;
+}
+
 TEST(Report, IsOneWellFormedPageWithItsProductsBeside) {
   const test::TemporaryFolder folder;
   const FullReport full;
@@ -130,8 +140,7 @@ TEST(Report, NeedsNothingFromOutside) {
   const FullReport full;
   const std::string page = read_text_file(write_report(folder.path(), full.input()).index);
   EXPECT_THAT(page, AllOf(Not(HasSubstr("http://")), Not(HasSubstr("https://")), Not(HasSubstr("url("))));
-  const std::regex source("src=\"([^\"]{0,5})");
-  for (std::sregex_iterator it(page.begin(), page.end(), source), end; it != end; ++it) EXPECT_EQ((*it)[1], "data:");
+  for (const std::string& source : attribute_values(page, "src")) EXPECT_EQ(source.substr(0, 5), "data:");
 }
 
 TEST(Report, LinksOnlyToWhatExists) {
@@ -139,12 +148,11 @@ TEST(Report, LinksOnlyToWhatExists) {
   const FullReport full;
   const WrittenReport written = write_report(folder.path(), full.input());
   const std::string page = read_text_file(written.index);
-  const std::regex link("href=\"([^\"#]+)\"");
   int links = 0;
-  for (std::sregex_iterator it(page.begin(), page.end(), link), end; it != end; ++it, ++links) {
-    const std::string address = (*it)[1];
-    if (address == "../config.xml" || address == "../run.json") continue;  // the run writes these
+  for (const std::string& address : attribute_values(page, "href")) {
+    if (address[0] == '#' || address == "../config.xml" || address == "../run.json") continue;  // the run writes these
     EXPECT_TRUE(std::filesystem::exists(written.index.parent_path() / address)) << address;
+    ++links;
   }
   EXPECT_GT(links, 20);
 }
