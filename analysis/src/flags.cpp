@@ -13,6 +13,8 @@ const std::vector<FlagName>& flag_names() {
       {measurement_flag::kNoBackground, "no_background", "too few background pixels: the fallback was used"},
       {measurement_flag::kOutside, "outside", "the star is not on the frame: no flux"},
       {measurement_flag::kNoFlux, "no_flux", "no pixel with light of the target: no flux"},
+      {measurement_flag::kSpoiltBackground, "spoilt_background",
+       "background pixels are saturated or bloomed on: the level is of the others"},
   };
   return names;
 }

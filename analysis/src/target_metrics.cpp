@@ -14,7 +14,8 @@ constexpr double kMagnitudeFactor = 2.5;
 // With so many bins their means tell the error of the mean flux, slow noise included; with fewer they scatter too much.
 constexpr std::int64_t kBinsForError = 10;
 constexpr std::uint32_t kUnclean = measurement_flag::kEdge | measurement_flag::kSaturated |
-                                   measurement_flag::kBadPixel | measurement_flag::kOutside | measurement_flag::kNoFlux;
+                                   measurement_flag::kBadPixel | measurement_flag::kOutside |
+                                   measurement_flag::kNoFlux | measurement_flag::kSpoiltBackground;
 
 double square(double v) {
   return v * v;

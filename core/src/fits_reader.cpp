@@ -70,8 +70,7 @@ const FitsUnit& FitsReader::State::go_to(int unit, FitsUnit::Kind kind) const {
   if (kind == FitsUnit::Kind::kImage) {
     int bits = 0;
     call(&ffgidt, &bits);
-    const int bytes_per_pixel = std::abs(bits) / kBitsPerByte;
-    bytes = bytes_per_pixel;
+    bytes = std::abs(bits) / kBitsPerByte;
     for (const std::int64_t axis : u.axes) bytes *= static_cast<double>(axis);
   } else {
     LONGLONG width = 0;

@@ -131,10 +131,13 @@ void EstimatorSet::apply(const Frame& frame, std::span<double> flux, std::span<s
 double EstimatorSet::background_without_spoilt(const Frame& frame, const Target& target, std::uint32_t& flags) const {
   double sum = 0.0;
   std::size_t good = 0;
+  bool saturated = false;
   for (std::size_t i = target.background_begin; i < target.background_end; ++i) {
     const std::uint32_t pixel = background_pixel_[i];
     const float counts = frame.pixels.pixels()[pixel];
-    if (frame.flags.pixels()[pixel] != 0 || !std::isfinite(counts)) continue;
+    const std::uint8_t pixel_flags = frame.flags.pixels()[pixel];
+    saturated = saturated || (aperture_flags(pixel_flags) & measurement_flag::kSaturated) != 0;
+    if (pixel_flags != 0 || !std::isfinite(counts)) continue;
     sum += static_cast<double>(counts);
     ++good;
   }
@@ -142,6 +145,9 @@ double EstimatorSet::background_without_spoilt(const Frame& frame, const Target&
     flags |= measurement_flag::kNoBackground;
     return gain_ * bias_ * target.weight_sum + target.known_background;
   }
+  // The offset holds the light that the model expects in the annulus: around a saturated star that is not what is
+  // there.
+  if (saturated) flags |= measurement_flag::kSpoiltBackground;
   return gain_ * (sum / static_cast<double>(good)) * target.weight_sum + target.offset;
 }
 

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <vector>
+
+#include "astroid/core/frame.hpp"
 
 namespace astroid {
 
@@ -18,29 +21,49 @@ double pour(double& pixel, double full_well, double carried) {
 
 }  // namespace
 
-double bloom(const ImageView<double, unit::SampledElectrons>& electrons, double full_well) {
+namespace {
+
+/// Columns that have any charge above the full well, found row by row as the memory lies.
+std::vector<int> overfull_columns(const ImageView<double, unit::SampledElectrons>& electrons, double full_well) {
+  const Rectangle& area = electrons.area();
+  std::vector<char> overfull(static_cast<std::size_t>(area.nx), 0);
+  for (int y = area.y0; y < area.y1(); ++y) {
+    const std::span<double> row = electrons.row(y);
+    for (std::size_t i = 0; i < row.size(); ++i) overfull[i] |= static_cast<char>(row[i] > full_well);
+  }
+  std::vector<int> columns;
+  for (std::size_t i = 0; i < overfull.size(); ++i)
+    if (overfull[i] != 0) columns.push_back(area.x0 + static_cast<int>(i));
+  return columns;
+}
+
+}  // namespace
+
+double bloom(const ImageView<double, unit::SampledElectrons>& electrons, double full_well,
+             const ImageView<std::uint8_t, unit::Flags>* flags) {
   const Rectangle& area = electrons.area();
   double lost = 0.0;
   std::vector<double> half_excess(static_cast<std::size_t>(area.ny));
-  for (int x = area.x0; x < area.x1(); ++x) {
-    bool any = false;
+  for (const int x : overfull_columns(electrons, full_well)) {
+    const auto touch = [&](int y, bool touched) {
+      if (touched && flags != nullptr) flags->at(x, y) |= pixel_flag::kFullWell;
+    };
     for (int y = area.y0; y < area.y1(); ++y) {
       double& pixel = electrons.at(x, y);
       const double excess = std::max(0.0, pixel - full_well);
       half_excess[static_cast<std::size_t>(y - area.y0)] = 0.5 * excess;
-      if (excess > 0.0) {
-        pixel = full_well;
-        any = true;
-      }
+      if (excess > 0.0) pixel = full_well;
+      touch(y, excess > 0.0);
     }
-    if (!any) continue;
     double up = 0.0;
     for (int y = area.y0; y < area.y1(); ++y) {
+      touch(y, up > 0.0);
       up = pour(electrons.at(x, y), full_well, up);
       up += half_excess[static_cast<std::size_t>(y - area.y0)];
     }
     double down = 0.0;
     for (int y = area.y1() - 1; y >= area.y0; --y) {
+      touch(y, down > 0.0);
       down = pour(electrons.at(x, y), full_well, down);
       down += half_excess[static_cast<std::size_t>(y - area.y0)];
     }

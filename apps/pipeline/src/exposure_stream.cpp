@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "astroid/core/worker_pool.hpp"
+#include "astroid/photometry/background.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "folders.hpp"
@@ -43,6 +44,14 @@ struct Block {
   std::vector<double> lost;          // [exposure]
   std::vector<std::int64_t> clipped;
 };
+
+/// Takes the mesh background out of a measured frame; written images keep theirs.
+void subtract_mesh(Frame& frame, const PhotometrySettings& settings) {
+  for (std::size_t r = 0; r < frame.pixels.layout().regions().size(); ++r) {
+    const BackgroundMap map(frame, r, {.cell = settings.mesh});
+    subtract_background(frame, r, map);
+  }
+}
 
 /// Exposures in a block: as many as keep a block of deviations below this size, at most a thousand or so (DESIGN: about
 /// 1024).
@@ -158,15 +167,6 @@ StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const s
         worker.simulate += seconds_since(start);
         block.lost[k] = worker.state.lost_electrons;
         block.clipped[k] = worker.state.clipped_pixels;
-        if (measures) {
-          start = Clock::now();
-          set.apply(worker.state.frame, worker.flux, worker.flags);
-          for (std::size_t t = 0; t < targets; ++t) {
-            block.by_exposure[k * targets + t] = static_cast<float>(worker.flux[t] / result.reference[t] - 1.0);
-            block.flags[k * targets + t] = worker.flags[t];
-          }
-          worker.measure += seconds_since(start);
-        }
         if (images.writes(camera, exposure)) {
           start = Clock::now();
           images.write(worker.state.frame);
@@ -174,6 +174,17 @@ StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const s
           worker.images += seconds_since(start);
         }
         if (camera == 0 && exposure == 0) result.first_frame = largest_region(worker.state.frame);
+        if (measures) {
+          start = Clock::now();
+          if (mission.photometry.background == BackgroundMethod::kMesh)
+            subtract_mesh(worker.state.frame, mission.photometry);
+          set.apply(worker.state.frame, worker.flux, worker.flags);
+          for (std::size_t t = 0; t < targets; ++t) {
+            block.by_exposure[k * targets + t] = static_cast<float>(worker.flux[t] / result.reference[t] - 1.0);
+            block.flags[k * targets + t] = worker.flags[t];
+          }
+          worker.measure += seconds_since(start);
+        }
         const std::int64_t n = ++done;
         if (options.progress) options.progress(n, exposures * cameras);
       });

@@ -19,6 +19,8 @@ Ground perfect_ground(const Scene& scene) {
   ground.model.targets = scene.targets();
   ground.model.psf = &scene.psf();
   ground.model.noise = expected_pixel_noise(scene.mission());
+  ground.model.accuracy = scene.summary().accuracy;
+  ground.model.contamination_limit = scene.mission().analysis.uncontaminated_spr;
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
   return ground;

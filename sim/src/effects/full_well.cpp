@@ -34,7 +34,7 @@ void FullWell::apply(ExposureState& state, const EffectContext& context) const {
   for (std::size_t r = 0; r < state.sampled.layout().regions().size(); ++r) {
     const auto electrons = state.sampled.view(r);
     const auto flags = state.frame.flags.view(r);
-    state.lost_electrons += ccd.blooming ? bloom(electrons, full_well) : clip_full_well(electrons, full_well);
+    state.lost_electrons += ccd.blooming ? bloom(electrons, full_well, &flags) : clip_full_well(electrons, full_well);
     const Rectangle& area = electrons.area();
     for (int y = area.y0; y < area.y1(); ++y) {
       const std::span<const double> row = electrons.row(y);

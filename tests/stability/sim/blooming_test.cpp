@@ -3,8 +3,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <numeric>
 #include <vector>
+
+#include "astroid/core/frame.hpp"
 
 namespace astroid {
 namespace {
@@ -58,6 +61,24 @@ TEST(Blooming, LeavesAColumnWithoutExcessAlone) {
   const Bloomed result = bloom_column(column, 1.0);
   EXPECT_EQ(result.column, column);
   EXPECT_EQ(result.lost, 0.0);
+}
+
+TEST(Blooming, FlagsEveryPixelThatSpiltOrReceived) {
+  Image<double, unit::SampledElectrons> image(1, 7);
+  image.at(0, 3) = 4.0;  // 3 too many: 1.5 each way fill one neighbour and half of the next
+  image.at(0, 0) = 0.25;
+  Image<std::uint8_t, unit::Flags> flags(1, 7);
+  const ImageView<std::uint8_t, unit::Flags> view = flags.view();
+  EXPECT_EQ(bloom(image.view(), 1.0, &view), 0.0);
+  const std::vector<std::uint8_t> expected{0,
+                                           pixel_flag::kFullWell,
+                                           pixel_flag::kFullWell,
+                                           pixel_flag::kFullWell,
+                                           pixel_flag::kFullWell,
+                                           pixel_flag::kFullWell,
+                                           0};
+  EXPECT_TRUE(std::equal(expected.begin(), expected.end(), flags.pixels().begin()));
+  EXPECT_DOUBLE_EQ(image.at(0, 1), 0.5);
 }
 
 TEST(FullWellClip, CountsWhatItRemoves) {

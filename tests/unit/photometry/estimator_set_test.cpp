@@ -197,10 +197,15 @@ TEST(EstimatorSet, LeavesSpoiltBackgroundPixelsOut) {
   const double clean = measure(estimators, frame).flux[0];
   frame.pixels.view(0).at(26, 20) = kNan;
   frame.pixels.view(0).at(20, 26) = 60000.0F;
-  frame.flags.view(0).at(20, 26) = pixel_flag::kAdcSaturated;
+  frame.flags.view(0).at(20, 26) = pixel_flag::kBad;
   Measured measured = measure(estimators, frame);
   EXPECT_NEAR(measured.flux[0], clean, 0.1);
   EXPECT_EQ(measured.flags[0], 0U);
+  // Saturation also spoils what the model expects of the pixels around it.
+  frame.flags.view(0).at(20, 26) = pixel_flag::kAdcSaturated;
+  measured = measure(estimators, frame);
+  EXPECT_NEAR(measured.flux[0], clean, 0.1);
+  EXPECT_EQ(measured.flags[0], measurement_flag::kSpoiltBackground);
   // Without enough of them the known background stands in.
   for (std::size_t i = estimators[0].aperture_terms; i < estimators[0].terms.size(); ++i)
     frame.flags.pixels()[estimators[0].terms[i].pixel] = pixel_flag::kBad;

@@ -28,6 +28,7 @@ inline constexpr std::uint32_t kContaminated = 1U << 3;  ///< neighbours give mo
 inline constexpr std::uint32_t kNoBackground = 1U << 4;  ///< too few background pixels: the fallback was used
 inline constexpr std::uint32_t kOutside = 1U << 5;       ///< the star is not on the frame: flux is NaN
 inline constexpr std::uint32_t kNoFlux = 1U << 6;        ///< no pixel with light of the target: flux is NaN
+inline constexpr std::uint32_t kSpoiltBackground = 1U << 7;  ///< background pixels are saturated or bloomed on
 }  // namespace measurement_flag
 
 /// A star as the ground believes it to be.
