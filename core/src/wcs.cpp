@@ -123,6 +123,21 @@ bool has_celestial_axis(const wcsprm& wcs) {
   return false;
 }
 
+// Blanks in place of bytes that FITS forbids, and no cards with texts that never end: WCSLIB 7.12 writes past its
+// buffers when it meets such a card.
+std::string harmless_header(std::string header) {
+  std::replace_if(
+      header.begin(), header.end(), [](char c) { return c < ' ' || c > '~'; }, ' ');
+  constexpr std::size_t kValueColumn = 10;  // where a card's value begins, from 0
+  for (std::size_t at = 0; at + kCardLength <= header.size(); at += kCardLength) {
+    const std::string_view card(header.data() + at, kCardLength);
+    const std::size_t open = card.find_first_not_of(' ', kValueColumn);
+    if (open == std::string_view::npos || card[open] != '\'') continue;
+    if (std::count(card.begin(), card.end(), '\'') % 2 != 0) header.replace(at, kCardLength, kCardLength, ' ');
+  }
+  return header;
+}
+
 // How far from its axis a projection has an image, deg.
 double reach(const wcsprm& wcs) {
   const std::string code = wcs.cel.prj.code;
@@ -243,7 +258,7 @@ std::optional<SkyProjection> SkyProjection::from_header(const std::string& heade
                 .expected = "a celestial WCS of the FITS standard in ICRS, FK5 (J2000) or galactic coordinates",
                 .message = "the world coordinates of the header cannot be used: " + reason});
   };
-  std::string text = header;  // WCSLIB's parser wants a writable one
+  std::string text = harmless_header(header);  // WCSLIB's parser wants a writable one
   int rejected = 0;
   int count = 0;
   wcsprm* all = nullptr;
@@ -262,8 +277,11 @@ std::optional<SkyProjection> SkyProjection::from_header(const std::string& heade
   if (count == 0) return std::nullopt;
   wcsprm& primary = all[0];
   if (!has_celestial_axis(primary)) return std::nullopt;
-  std::array<int, NWCSFIX> fixed{};
-  wcsfix(0, nullptr, &primary, fixed.data());  // repairs of old headers; what it cannot repair, wcsset() reports
+  // Repairs of old headers. The last of them calls wcsset() itself, and WCSLIB leaks when that fails and is called
+  // again.
+  (void)cdfix(&primary);
+  (void)unitfix(0, &primary);
+  if (const int status = celfix(&primary); status > 0) throw refuse(wcsfix_errmsg[status]);
   if (const int status = wcsset(&primary); status != 0) throw refuse(wcs_message(status));
   if (primary.lng < 0 || primary.lat < 0) throw refuse("only one of two celestial axes");
 

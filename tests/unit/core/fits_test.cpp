@@ -15,6 +15,7 @@
 
 #include "astroid/core/atomic_file.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/wcs.hpp"
 #include "astroid/test/file_size_limit.hpp"
 #include "astroid/test/temporary_folder.hpp"
 
@@ -448,6 +449,43 @@ TEST(FitsReader, AppliesScaleAndBlank) {
   const auto image = doubles(reader, 1);
   EXPECT_TRUE(std::isnan(image.at(0, 0)));
   EXPECT_EQ(image.at(1, 0), 12.0);
+}
+
+// Bytes of a good file changed at random: every one is read or refused, whatever CFITSIO and WCSLIB make of it.
+TEST(FitsReader, ReadsOrRefusesDamagedFiles) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "good.fits";
+  FitsWriter writer(path);
+  writer.begin_image(FitsNumber::kUnsigned16, {4, 3});
+  writer.cards(SkyProjection(CameraPointing{.axis = {10.0, 20.0}, .roll = Degrees(5.0)}).fits_cards());
+  writer.write_pixels(0, std::vector<std::uint16_t>(12, 1000));
+  writer.commit();
+  const std::string good = bytes_of(path);
+  std::uint32_t state = 1;
+  const auto next = [&](std::size_t below) {
+    state = state * 1664525U + 1013904223U;  // Knuth's linear congruence: any damage will do
+    return static_cast<std::size_t>(state >> 8U) % below;
+  };
+  int read = 0;
+  int refused = 0;
+  for (int i = 0; i < 500; ++i) {
+    std::string bytes = good;
+    for (std::size_t k = 0; k <= next(4); ++k) {
+      const std::size_t card = next(2880 / 80) * 80;
+      bytes[card + next(40)] = "0123456789-E.'TF /\x01"[next(19)];
+    }
+    if (next(10) == 0) bytes.resize(next(bytes.size()));
+    try {
+      const FitsReader reader(folder.write("damaged.fits", bytes));
+      (void)SkyProjection::from_header(reader.header_text(1), "damaged.fits");
+      (void)doubles(reader, reader.first_image());
+      ++read;
+    } catch (const InputError&) {
+      ++refused;
+    }
+  }
+  EXPECT_GT(read, 50);
+  EXPECT_GT(refused, 50);
 }
 
 TEST(FitsReader, ReadsOneFileFromSeveralThreads) {

@@ -253,6 +253,13 @@ TEST(SkyProjection, ReadsNothingWhereThereIsNoWcs) {
   EXPECT_FALSE(SkyProjection::from_header("", "empty.fits"));
 }
 
+TEST(SkyProjection, IsNotHarmedByATextThatNeverEnds) {
+  EXPECT_FALSE(SkyProjection::from_header(
+      header_text(
+          {"CTYPE1  = 'RA---TAN-SIP. and so on until the card is full and nothing closes the quotation", "END"}),
+      "open.fits"));
+}
+
 TEST(SkyProjection, NamesTheFileOfAHeaderItCannotUse) {
   const auto read = [](const std::vector<std::string>& more) {
     std::vector<std::string> cards = {"CTYPE1  = 'RA---TAN'", "CTYPE2  = 'DEC--TAN'", "CRPIX1  = 1.0",

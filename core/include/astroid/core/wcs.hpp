@@ -21,10 +21,10 @@ namespace astroid {
 /// turns the star field in the image counter-clockwise (from +x to +y) about the axis position, as FITS' CROTA2 does:
 /// CD = scale * [-cos -sin; -sin cos]. At the poles the right ascension of the axis says which way is north.
 struct CameraPointing {
-  SkyPosition axis;  ///< of the optical axis, ICRS
-  Degrees roll;
+  SkyPosition axis{};  ///< of the optical axis, ICRS
+  Degrees roll{};
   PixelScale scale{1.0};           ///< at the axis
-  PixelPosition axis_pixel;        ///< where the axis falls, 0-based
+  PixelPosition axis_pixel{};      ///< where the axis falls, 0-based
   std::string projection = "TAN";  ///< one of supported_projections()
 };
 
