@@ -54,7 +54,9 @@ Progress progress_bar(const std::string& what) {
   return [bar = std::make_shared<Bar>(what)](std::int64_t done, std::int64_t all) { bar->show(done, all); };
 }
 
-int thread_count(int asked) { return asked > 0 ? asked : available_threads(); }
+int thread_count(int asked) {
+  return asked > 0 ? asked : available_threads();
+}
 
 std::string duration_text(double seconds) {
   constexpr double kMinute = 60.0;
