@@ -3,7 +3,7 @@
 .PHONY: help packages test-packages build assess test check bench format tidy asan tsan clean
 
 mission := plato
-astroid := build/release/apps/astroid
+astroid := build/release/bin/astroid
 
 help: ## list these commands
 	@sed -n 's/^\([a-z][a-z-]*\):[^#]*## \(.*\)/\1\t\2/p' $(MAKEFILE_LIST) | expand -t 16
@@ -14,7 +14,7 @@ packages: ## install the Debian packages that building and running need
 test-packages: ## install those of the test suite as well
 	@cmake/install-packages.sh cmake/packages.txt cmake/packages-test.txt
 
-build: packages ## build the program as a user runs it: build/release/apps/astroid
+build: packages ## build the program as a user runs it: build/release/bin/astroid
 	cmake --preset release
 	cmake --build --preset release
 
