@@ -21,7 +21,7 @@ std::string warnings_box(const PageContent& content) {
   std::vector<std::string> all = content.input->warnings;
   all.insert(all.end(), content.problems.begin(), content.problems.end());
   if (all.empty()) return {};
-  std::string out = "<div class=\"warnings\" role=\"note\"><b>Warnings</b><ul>";
+  std::string out = "<div class=\"warnings\" role=\"note\"><b>Notes and warnings</b><ul>";
   for (const std::string& warning : all) out += "<li>" + html::escape(warning) + "</li>";
   return out + "</ul></div>\n";
 }

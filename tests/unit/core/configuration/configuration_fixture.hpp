@@ -13,16 +13,19 @@ namespace astroid::test {
 
 inline constexpr const char* kPlatoCatalogue = "catalogues/data/tycho2_lops2_8deg.csv";
 
+inline constexpr const char* kPlatoBackground = "catalogues/data/lops2_faint_synthetic.csv";
+
 inline std::filesystem::path plato_preset() {
   return source_dir() / "apps/missions/plato.xml";
 }
 
-/// A data folder with an (empty) file where the PLATO preset looks for its catalogue, and one `stars.csv`.
+/// A data folder with (empty) files where the PLATO preset looks for its catalogues, and one `stars.csv`.
 class FolderWithCatalogue {
  public:
   FolderWithCatalogue() {
     std::filesystem::create_directories(folder_.path() / "catalogues/data");
     folder_.write(kPlatoCatalogue, "ra,dec,mag\n");
+    folder_.write(kPlatoBackground, "ra,dec,mag\n");
     folder_.write("stars.csv", "ra,dec,mag\n");
   }
   [[nodiscard]] const std::filesystem::path& path() const { return folder_.path(); }

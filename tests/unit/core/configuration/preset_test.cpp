@@ -34,6 +34,7 @@ TEST(PlatoPreset, FillsEveryPartOfTheMission) {
   EXPECT_EQ(m.telescope.simulated_cameras, 1);
   EXPECT_EQ(m.psf.sigma, Pixels(0.6));
   EXPECT_EQ(m.field.catalogue, (data.path() / test::kPlatoCatalogue).string());
+  EXPECT_EQ(m.field.background_catalogue, (data.path() / test::kPlatoBackground).string());
   EXPECT_EQ(m.field.catalogue_passband, "V_T");
   EXPECT_EQ(m.field.sky_background, ElectronsPerSecond(45));
   EXPECT_EQ(m.ccd.columns, 4510);
