@@ -54,7 +54,7 @@ std::vector<std::string> mission_names() {
 
 std::filesystem::path find_configuration(const std::string& name) {
   const bool looks_like_a_path = name.find('/') != std::string::npos || name.ends_with(".xml");
-  if (looks_like_a_path || std::filesystem::exists(name)) return name;
+  if (looks_like_a_path || std::filesystem::is_regular_file(name)) return name;
   for (const auto& folder : data_folders())
     for (const std::string& missions : mission_folders()) {
       const std::filesystem::path preset = folder / missions / (name + ".xml");
