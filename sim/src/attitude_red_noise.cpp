@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "astroid/core/distributions.hpp"
+#include "astroid/core/jitter_noise.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/sim/attitude.hpp"
 
@@ -59,7 +60,8 @@ class RedNoiseAttitude final : public AttitudeModel {
   [[nodiscard]] AttitudeVariance variance() const override { return scaled(1.0); }
 
   [[nodiscard]] AttitudeVariance variance_of_mean(std::int64_t exposures) const override {
-    return scaled(mean_variance(exposures));
+    const double rms = ou_mean_rms(1.0, Seconds(timescale_), {Seconds(cycle_), Seconds(exposure_), exposures});
+    return scaled(rms * rms);
   }
 
   [[nodiscard]] int steps_for(double fraction) const override {
@@ -81,23 +83,6 @@ class RedNoiseAttitude final : public AttitudeModel {
 
   [[nodiscard]] AttitudeVariance scaled(double factor) const {
     return {yaw_ * yaw_ * factor, pitch_ * pitch_ * factor, roll_ * roll_ * factor};
-  }
-
-  /// Variance of the mean of n exposure means of a unit process: its exponential covariance integrated over both
-  /// exposures, then summed over all pairs of the n.
-  [[nodiscard]] double mean_variance(std::int64_t n) const {
-    const double t = exposure_ / timescale_;
-    const double own = 2.0 * (t + det::expm1(-t)) / (t * t);
-    const double pair = (det::expm1(t) + det::expm1(-t)) / (t * t);
-    const double a = det::exp(-cycle_ / timescale_);
-    double sum = 0.0;
-    double power = 1.0;
-    for (std::int64_t lag = 1; lag < n; ++lag) {
-      power *= a;
-      sum += static_cast<double>(n - lag) * power;
-    }
-    const auto count = static_cast<double>(n);
-    return (count * own + 2.0 * pair * sum) / (count * count);
   }
 
   double yaw_, pitch_, roll_;

@@ -10,6 +10,7 @@
 
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
+#include "astroid/core/photometric.hpp"
 #include "astroid/sim/digitise.hpp"
 #include "effects/jitter_model.hpp"
 #include "psf_sensitivity.hpp"
@@ -86,8 +87,7 @@ std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {
 }
 
 double star_electrons(Magnitude magnitude, const TelescopeSettings& telescope, Seconds exposure_time) {
-  constexpr double kPogson = 0.4;
-  return det::exp10(-kPogson * (magnitude - telescope.zero_point).value()) * exposure_time.value();
+  return (electron_rate(magnitude, telescope.zero_point) * exposure_time).value();
 }
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)

@@ -40,7 +40,7 @@ class PixelPsf {
   /// three-point Gauss-Hermite rule along the principal axes of the motion.
   /// @param motion     covariance of the position about its mean, px².
   /// @param fractions  [out] shape (box.ny, box.nx).  @param scratch  resized as needed.
-  /// @accuracy  O(motion² / sigma⁴) relative (test: PixelPsf.BroadeningIsTheMeanOfMovedStamps).  @source F26
+  /// @accuracy  O(motion² / sigma⁴) relative (test: Broadening.IsTheMeanOfMovedStampsToSecondOrder).  @source F26
   virtual void integrate_broadened(PixelPosition centre, const MotionCovariance& motion, Rectangle box,
                                    std::span<double> fractions, std::vector<double>& scratch) const;
 

@@ -1,0 +1,192 @@
+// Skipping is a claim about accuracy: an effect just below its threshold, run anyway, moves no star's flux by more than
+// the tolerance, and adds no more than the allowed variance.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <functional>
+#include <numeric>
+
+#include "astroid/sim/simulator.hpp"
+#include "astroid/test/scenes.hpp"
+
+namespace astroid {
+namespace {
+
+constexpr int kSide = 96;
+
+std::vector<test::LabStar> field() {
+  std::vector<test::LabStar> stars;
+  for (int i = 0; i < 9; ++i)
+    stars.push_back(
+        {16.0 + 32.0 * (i % 3) + 0.11 * i - 0.4, 16.0 + 32.0 * (i / 3) - 0.09 * i + 0.3, 3e3 * std::pow(2.0, i)});
+  return stars;
+}
+
+/// Photon noise and readout noise alone; effects under test are added with a strength.
+Mission quiet_mission() {
+  Mission mission = test::bare_mission(kSide, kSide);
+  mission.ccd.readout_noise = Electrons(20.0);
+  mission.simulation.exposures = 32;
+  return mission;
+}
+
+struct Planned {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<Plan> plan;
+};
+Planned planned(const Mission& mission) {
+  Planned p;
+  p.scene = std::make_shared<const Scene>(mission, test::lab_catalogue(field()));
+  p.plan = std::make_shared<Plan>(make_plan(*p.scene));
+  return p;
+}
+
+/// The largest strength (to 1 %) at which the plan leaves the effect out. `set` puts a strength into a mission.
+double threshold(const std::string& effect, const std::function<void(Mission&, double)>& set, double high) {
+  double low = 0.0;
+  for (int i = 0; i < 60 && high - low > 0.01 * high; ++i) {
+    const double middle = 0.5 * (low + high);
+    Mission mission = quiet_mission();
+    set(mission, middle);
+    (planned(mission).plan->runs(effect) ? high : low) = middle;
+  }
+  return low;
+}
+
+/// The same plan with one effect switched on.
+std::shared_ptr<const Plan> with_effect(const Plan& plan, const std::string& name) {
+  auto changed = std::make_shared<Plan>(plan);
+  for (PlannedEffect& effect : changed->effects)
+    if (effect.effect->spec().name == name) effect.need.needed = true;
+  return changed;
+}
+
+/// Expected electrons in 6 x 6 px around each star.
+std::vector<double> fluxes(const Planned& p, const std::shared_ptr<const Plan>& plan, std::int64_t exposure) {
+  const Simulator simulator(p.scene, plan, 0);
+  ExposureState state = simulator.make_state();
+  simulator.expect(exposure, state);
+  std::vector<double> sums;
+  for (const SceneStar& star : p.scene->stars()) {
+    double sum = 0.0;
+    const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
+    const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
+    for (int y = y0; y < y0 + 6; ++y)
+      for (int x = x0; x < x0 + 6; ++x) sum += state.expected.view(0).at(x, y);
+    sums.push_back(sum);
+  }
+  return sums;
+}
+
+struct SkipCase {
+  const char* effect;
+  std::function<void(Mission&, double)> set;
+  double high;  ///< surely needed
+};
+
+class SkippedBelowThreshold : public testing::TestWithParam<SkipCase> {};
+
+TEST_P(SkippedBelowThreshold, IsHarmless) {
+  const SkipCase& c = GetParam();
+  const double strength = threshold(c.effect, c.set, c.high);
+  ASSERT_GT(strength, 0.0) << "the effect is never left out";
+  Mission mission = quiet_mission();
+  c.set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs(c.effect));
+  const std::vector<double> without = fluxes(p, p.plan, 0);
+  const std::vector<double> with = fluxes(p, with_effect(*p.plan, c.effect), 0);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    const double tolerance = p.scene->summary().flux_tolerance(p.scene->stars()[i].electrons);
+    worst = std::max(worst, std::abs(with[i] - without[i]) / tolerance);
+  }
+  std::printf("%s at %.3g: moves a flux by at most %.2f of its tolerance\n", c.effect, strength, worst);
+  EXPECT_LE(worst, 1.0);
+  EXPECT_GT(worst, 0.0) << "the effect did nothing: was it run?";
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Effects, SkippedBelowThreshold,
+    testing::Values(SkipCase{"sky", [](Mission& m, double v) { m.field.sky_background = ElectronsPerSecond(v); }, 10.0},
+                    SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); },
+                             10.0},
+                    SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
+    [](const testing::TestParamInfo<SkipCase>& parameter) {
+      std::string name = parameter.param.effect;
+      std::erase(name, '-');
+      return name;
+    });
+
+TEST(SkippedBelowThreshold, JitterIsHarmless) {
+  const auto set = [](Mission& m, double arcsec) {
+    m.satellite.jitter.model = JitterModel::kRedNoise;
+    m.satellite.jitter.yaw = m.satellite.jitter.pitch = Arcseconds(arcsec);
+  };
+  const double strength = threshold("jitter-model", set, 1.0);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned off = planned(mission);
+  ASSERT_FALSE(off.plan->runs("jitter-model"));
+  // Just above, the plan knows how to move the stars: take that plan with the motion of just below.
+  Mission above = quiet_mission();
+  set(above, 1.05 * strength);
+  const Planned on = planned(above);
+  ASSERT_TRUE(on.plan->runs("jitter-model"));
+  const std::vector<double> still = fluxes(off, off.plan, 0);
+  std::vector<double> squares(still.size(), 0.0);
+  std::vector<double> means(still.size(), 0.0);
+  const auto exposures = static_cast<double>(mission.simulation.exposures);
+  for (std::int64_t k = 0; k < mission.simulation.exposures; ++k) {
+    const std::vector<double> moved = fluxes(on, on.plan, k);
+    for (std::size_t i = 0; i < moved.size(); ++i) {
+      const double d = moved[i] / still[i] - 1.0;
+      squares[i] += d * d / exposures;
+      means[i] += d / exposures;
+    }
+  }
+  for (std::size_t i = 0; i < squares.size(); ++i) {
+    const double flux = off.scene->stars()[i].electrons;
+    // 5 % more motion than the threshold: 1.05² in variance.
+    EXPECT_LE(squares[i], 1.11 * kVarianceTolerance * off.scene->summary().relative_variance_in_bin(flux)) << i;
+    EXPECT_GT(squares[i], 0.0);
+  }
+}
+
+TEST(SkippedBelowThreshold, ReadoutNoiseIsHarmless) {
+  const auto set = [](Mission& m, double electrons) { m.ccd.readout_noise = Electrons(electrons); };
+  const double strength = threshold("readout-noise", set, 100.0);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs("readout-noise"));
+  // Variance that 36 pixels would add, against the photon noise of the faintest star.
+  EXPECT_LE(36.0 * strength * strength,
+            1.01 * kVarianceTolerance * p.scene->summary().faintest_target_electrons + 1e-3);
+}
+
+TEST(SkippedBelowThreshold, FullWellIsNeverReached) {
+  const auto set = [](Mission& m, double inverse) { m.ccd.full_well = Electrons(1.0 / inverse); };
+  const double strength = threshold("full-well", set, 1e-3);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs("full-well"));
+  const Simulator without(p.scene, p.plan, 0);
+  const Simulator with(p.scene, with_effect(*p.plan, "full-well"), 0);
+  ExposureState a = without.make_state();
+  ExposureState b = with.make_state();
+  for (int exposure = 0; exposure < 20; ++exposure) {
+    without.simulate(exposure, a);
+    with.simulate(exposure, b);
+    EXPECT_TRUE(std::ranges::equal(a.frame.pixels.pixels(), b.frame.pixels.pixels()));
+    EXPECT_EQ(b.lost_electrons, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace astroid
