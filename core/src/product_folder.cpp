@@ -77,7 +77,7 @@ ProductFolder::ProductFolder(const fs::path& folder, ExistingProducts existing) 
     const bool unfinished = fs::exists(partial) && !(fs::is_directory(partial) && fs::is_empty(partial));
     if (unfinished && existing == ExistingProducts::kRefuse) {
       throw refuse(partial, "an unfinished run is there", "no unfinished run",
-                   "--resume goes on with it, --overwrite starts anew");
+                   "--overwrite removes it and starts anew");
     }
     fs::create_directories(partial);
     lock();

@@ -19,7 +19,6 @@ struct ConfigurationOptions {
 struct RunFolderOptions {
   std::string folder;
   bool overwrite = false;
-  bool resume = false;
   int threads = 0;  ///< 0: all processors
   bool verbose = false;
 };

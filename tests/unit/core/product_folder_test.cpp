@@ -90,7 +90,7 @@ TEST(ProductFolder, ResumesAnUnfinishedRun) {
   }
   EXPECT_FALSE(fs::exists(path));
   EXPECT_THAT([&] { ProductFolder(path, ExistingProducts::kRefuse); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("results.partial: an unfinished run"), HasSubstr("--resume"))));
+              ThrowsMessage<InputError>(AllOf(HasSubstr("results.partial: an unfinished run"), HasSubstr("--overwrite"))));
   {
     ProductFolder folder(path, ExistingProducts::kResume);
     EXPECT_TRUE(folder.resumed());

@@ -31,7 +31,7 @@ struct Product {
 };
 
 /// The folder that `-o DIR` names. A run writes in DIR.partial; commit() renames it to DIR. A run that ends otherwise
-/// leaves DIR.partial for kResume (nothing if it is empty). A lock keeps two runs from writing the same folder.
+/// leaves DIR.partial (nothing if it is empty). A lock keeps two runs from writing the same folder.
 /// @throws EnvironmentError(path, cause) when the disk or permissions fail, from every member function.
 class ProductFolder {
  public:
