@@ -6,17 +6,16 @@ namespace astroid {
 
 namespace {
 
-/// Nanoseconds a pixel and exposure, measured with tests/bench (BM_Effect) on one core of the machine named in
-/// docs/performance.md.
+/// Nanoseconds a pixel and exposure, measured with tests/bench (BM_Effects) on one core of the machine named in
+/// docs/performance.md, which has AVX-512; without it noise takes up to three times as long.
 struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
-constexpr PixelCost kPixelCosts[] = {{"sky", 0.4},           {"prnu", 0.5},      {"dark-current", 0.5},
-                                     {"photon-noise", 14.0}, {"full-well", 1.5}, {"readout-noise", 7.0},
-                                     {"gain", 0.8},          {"bias", 0.4},      {"adc", 1.5}};
-constexpr double kStillCopy =
-    0.5;  ///< ns a pixel: the cached noiseless image instead of everything before photon noise
+constexpr PixelCost kPixelCosts[] = {{"sky", 0.3},          {"prnu", 0.4},      {"dark-current", 0.4},
+                                     {"photon-noise", 5.4}, {"full-well", 1.2}, {"readout-noise", 2.5},
+                                     {"gain", 1.2},         {"bias", 0.3},      {"adc", 1.3}};
+constexpr double kClear = 0.3;  ///< ns a pixel: the noiseless image is set to zero, or copied where nothing moves
 constexpr double kAnalyticEdge = 15.0;  ///< ns an edge of a pixel column or row (one erf)
 constexpr double kAnalyticPixel = 0.6;  ///< ns a stamp pixel
 constexpr double kPrfPixel = 8.0;       ///< ns a stamp pixel, 16 taps
@@ -47,7 +46,7 @@ double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Sc
 }
 
 double predicted_seconds(const Plan& plan, const Scene& scene) {
-  double seconds = kNanosecond * kStillCopy * static_cast<double>(scene.layout()->size());
+  double seconds = kNanosecond * kClear * static_cast<double>(scene.layout()->size());
   for (const PlannedEffect& effect : plan.effects) seconds += predicted_seconds(effect, plan, scene);
   return seconds;
 }
