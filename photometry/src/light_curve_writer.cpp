@@ -111,9 +111,8 @@ struct LightCurveWriter::Impl {
   int begin_image(const std::string& name) {
     // An image without pixels is written as a header alone: FITS knows no axis of length 0 that readers agree on.
     const bool empty = stars == 0 || header.exposures == 0;
-    const int unit = writer.begin_image(
-        FitsNumber::kFloat32, empty ? std::vector<std::int64_t>{} : std::vector<std::int64_t>{header.exposures, stars},
-        name);
+    const int unit = empty ? writer.begin_image(FitsNumber::kFloat32, {}, name)
+                           : writer.begin_large_image(FitsNumber::kFloat32, {header.exposures, stars}, name);
     writer.card({"BUNIT", "", "relative deviation from REFERENCE"});
     return unit;
   }
