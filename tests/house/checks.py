@@ -109,6 +109,12 @@ def references(tree):
         for key in keys:
             if key not in known:
                 yield f"{name}:{number}: {key} is not in docs/references.bib"
+    for name in tree.code():
+        if name.startswith("sim/src/effects/"):
+            for number, line in tree.lines(name):
+                for key in re.findall(r'"([A-Z][A-Za-z]+\d{4}[a-z]?)"', line):
+                    if key not in known:
+                        yield f"{name}:{number}: the source {key} of an effect is not in docs/references.bib"
     readable = [name for name in tree.files() if name.endswith((*CODE, ".md", ".xml", ".csv", ".py")) and not name.startswith("docs/references")]
     used = set()
     for name in readable:

@@ -83,7 +83,8 @@ class ChecksOfTheTree(unittest.TestCase):
         self.write("docs/references.bib", "@article{Short2013,\n}\n@article{Lone1999,\n}\n@article{Short2013,\n}\n")
         self.write("core/src/a.hpp", "/// @source Short2013 and\n///   Nobody2020.\n\n/// @source a book of Short2013\n")
         self.write("core/src/b.hpp", "/// @source F20 of Short2013\n")
-        self.expect(checks.references, "Short2013 is there twice", "a.hpp:1: Nobody2020", "a.hpp:4: @source must begin", "b.hpp:1: F20", "nothing refers to Lone1999")
+        self.write("sim/src/effects/c.hpp", 'spec{"flat", "Nowhere1984"}\n')
+        self.expect(checks.references, "Short2013 is there twice", "a.hpp:1: Nobody2020", "a.hpp:4: @source must begin", "b.hpp:1: F20", "c.hpp:1: the source Nowhere1984", "nothing refers to Lone1999")
 
     def test_guides_ask_every_folder_to_explain_itself(self):
         for folder in (*checks.FOLDERS_WITH_A_GUIDE, "tests/unit"):
