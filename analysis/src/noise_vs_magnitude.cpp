@@ -133,11 +133,11 @@ std::optional<NoiseAtMagnitude> noise_at_magnitude(std::span<const TargetMetrics
                           measured};
 }
 
-Requirement plato_requirement(int cameras) {
+Requirement plato_requirement(int cameras, double bin_hours) {
   constexpr double kNoise = 50.0;      // ppm in 1 h
   constexpr double kCameras = 24.0;    // that it is meant for
   constexpr double kMagnitude = 11.0;  // V
-  return {"PLATO P1", kMagnitude, kNoise * std::sqrt(kCameras / cameras)};
+  return {"PLATO P1", kMagnitude, kNoise * std::sqrt(kCameras / cameras / bin_hours)};
 }
 
 Compliance compliance(std::span<const TargetMetrics> targets, const Requirement& requirement) {

@@ -36,6 +36,24 @@ void add_run_folder(CLI::App* app, RunFolderOptions& options, const std::string&
   app->add_flag("-v,--verbose", options.verbose, "say where the time went");
 }
 
+/// A misspelt command, or an option before it, is named in the message. @throws InputError
+void check_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2) return;
+  const std::string given = argv[1];
+  const bool is_option = given.starts_with('-');
+  if (is_option && app.get_option_no_throw(given) != nullptr) return;
+  std::string known;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == given) return;
+    known += (known.empty() ? "" : ", ") + command->get_name();
+  }
+  throw InputError(
+      Problem{.parameter = is_option ? given : "COMMAND",
+              .value = is_option ? "" : given,
+              .expected = (is_option ? "astroid COMMAND and then its options; the commands are " : "one of ") + known,
+              .message = is_option ? "no option of the program itself" : "there is no such command"});
+}
+
 }  // namespace
 
 int run_command_line(int argc, char** argv) {
@@ -47,6 +65,7 @@ int run_command_line(int argc, char** argv) {
   std::function<int()> command;
 
   AssessOptions assess_options;
+  assess_options.run.command_line.assign(argv, argv + argc);
   CLI::App* sub = app.add_subcommand("assess", "the main job: simulate, calibrate, measure, analyse and report");
   add_configuration(sub, assess_options.configuration);
   add_run_folder(sub, assess_options.run, "out/assess");
@@ -57,6 +76,7 @@ int run_command_line(int argc, char** argv) {
   sub->callback([&] { command = [&] { return assess(assess_options); }; });
 
   AssessOptions simulate_options;
+  simulate_options.run.command_line.assign(argv, argv + argc);
   sub = app.add_subcommand("simulate", "images and truth only");
   add_configuration(sub, simulate_options.configuration);
   add_run_folder(sub, simulate_options.run, "out/simulate");
@@ -189,6 +209,7 @@ int run_command_line(int argc, char** argv) {
   sub = app.add_subcommand("doctor", "versions of everything the program runs on, and what is missing");
   sub->callback([&] { command = [] { return doctor(); }; });
 
+  check_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

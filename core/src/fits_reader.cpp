@@ -7,7 +7,9 @@
 #include <array>
 #include <cctype>
 #include <cstdlib>
+#include <fstream>
 #include <limits>
+#include <string_view>
 #include <utility>
 
 #include "fits_file.hpp"
@@ -25,6 +27,14 @@ bool equal_but_for_case(const std::string& a, const std::string& b) {
   return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](char x, char y) {
     return std::toupper(static_cast<unsigned char>(x)) == std::toupper(static_cast<unsigned char>(y));
   });
+}
+
+/// Whether a file begins with the card that every FITS file begins with.
+bool begins_like_fits(const std::string& path) {
+  constexpr std::string_view kFirstCard = "SIMPLE  =";
+  std::string begin(kFirstCard.size(), '\0');
+  std::ifstream(path, std::ios::binary).read(begin.data(), static_cast<std::streamsize>(begin.size()));
+  return begin == kFirstCard;
 }
 
 }  // namespace
@@ -107,6 +117,8 @@ FitsReader::FitsReader(const std::filesystem::path& path) : state_(std::make_uni
     fits_open_diskfile(&s.file, s.path.c_str(), READONLY, &status);
     if (status != 0) {
       s.file = nullptr;
+      if (begins_like_fits(s.path))
+        throw s.refuse("is truncated or damaged: its header has no end", "a complete FITS file");
       throw s.refuse("is not a FITS file: " + cfitsio_message(status, 0), "a FITS file");
     }
   }

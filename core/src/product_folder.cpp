@@ -79,6 +79,8 @@ ProductFolder::ProductFolder(const fs::path& folder, ExistingProducts existing) 
       throw refuse(partial, "an unfinished run is there", "no unfinished run",
                    "--overwrite removes it and starts anew");
     }
+    for (fs::path above = partial.parent_path(); !above.empty() && !fs::exists(above); above = above.parent_path())
+      made_.insert(made_.begin(), above);
     fs::create_directories(partial);
     lock();
     if (existing == ExistingProducts::kOverwrite) remove_all_products();
@@ -90,7 +92,9 @@ ProductFolder::~ProductFolder() {
   unlock();
   if (committed_) return;
   std::error_code ignored;
-  fs::remove(working(), ignored);  // only if it is empty
+  // Only what is empty goes.
+  fs::remove(working(), ignored);
+  for (auto folder = made_.rbegin(); folder != made_.rend(); ++folder) fs::remove(*folder, ignored);
 }
 
 void ProductFolder::remove_all_products() {
@@ -126,17 +130,21 @@ fs::path ProductFolder::file(const fs::path& relative) const {
 }
 
 std::vector<Product> ProductFolder::products() const {
+  return products_in(working());
+}
+
+std::vector<Product> products_in(const fs::path& folder) {
   std::vector<Product> result;
-  on_disk(path_, [&] {
-    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(working())) {
-      const std::string name = entry.path().lexically_relative(working()).generic_string();
+  on_disk(folder, [&] {
+    for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+      const std::string name = entry.path().lexically_relative(folder).generic_string();
       if (!entry.is_regular_file() || name == kMark || name == kLockName || entry.path().extension() == ".partial")
         continue;
       result.push_back({name, entry.file_size(), {}});
     }
   });
   std::sort(result.begin(), result.end(), [](const Product& a, const Product& b) { return a.path < b.path; });
-  for (Product& product : result) product.sha256 = sha256_of_file(working() / product.path);
+  for (Product& product : result) product.sha256 = sha256_of_file(folder / product.path);
   return result;
 }
 

@@ -16,6 +16,7 @@ int compare(const AnalyseOptions& options) {
     throw InputError(Problem{.parameter = "DIR",
                              .expected = "the folder of a run, or both --truth and --sources",
                              .message = "nothing to analyse"});
+  require_files({options.truth, options.sources});
   const std::string output = options.output.empty() ? "out/analyse" : options.output;
   if (std::filesystem::exists(output) && !options.overwrite)
     throw InputError(

@@ -21,6 +21,7 @@ struct RunFolderOptions {
   bool overwrite = false;
   int threads = 0;  ///< 0: all processors
   bool verbose = false;
+  std::vector<std::string> command_line;  ///< for run.json
 };
 
 struct AssessOptions {

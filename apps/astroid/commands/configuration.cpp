@@ -66,6 +66,16 @@ std::filesystem::path find_configuration(const std::string& name) {
               .message = "there is no such configuration"});
 }
 
+void require_files(const std::vector<std::string>& files) {
+  std::vector<Problem> problems;
+  for (const std::string& file : files)
+    if (!std::filesystem::is_regular_file(file))
+      problems.push_back({.file = file,
+                          .expected = "the name of a readable file",
+                          .message = std::filesystem::exists(file) ? "is not a file" : "there is no such file"});
+  if (!problems.empty()) throw InputError(std::move(problems));
+}
+
 ResolvedConfiguration read(const ConfigurationOptions& options, std::vector<std::string> more) {
   ConfigurationSurroundings surroundings{.overrides = options.set, .data_folders = data_folders()};
   if (options.seed) surroundings.overrides.push_back(fmt::format("Simulation/Seed={}", *options.seed));

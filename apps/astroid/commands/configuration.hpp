@@ -22,4 +22,7 @@ std::filesystem::path find_configuration(const std::string& name);
 /// Reads a configuration with the overrides of the command line. @throws InputError with every problem
 ResolvedConfiguration read(const ConfigurationOptions& options, std::vector<std::string> more = {});
 
+/// Checks that files named on the command line are there. @throws InputError with every one that is not
+void require_files(const std::vector<std::string>& files);
+
 }  // namespace astroid::commands

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <filesystem>
 
 #include "astroid/catalogues/catalogue_reader.hpp"
@@ -7,6 +8,7 @@
 #include "astroid/catalogues/synthetic_field.hpp"
 #include "astroid/core/error.hpp"
 #include "commands/commands.hpp"
+#include "commands/configuration.hpp"
 
 namespace astroid::commands {
 
@@ -49,13 +51,47 @@ StarCatalogue synthetic(const FieldOptions& options) {
   return make_synthetic_field(request);
 }
 
+/// Fields of a request, as problems name them, and the options that set them.
+constexpr std::array<std::array<const char*, 2>, 9> kOptions = {{{"region", "--radius, or --width and --height"},
+                                                                 {"radius", "--radius"},
+                                                                 {"width", "--width"},
+                                                                 {"height", "--height"},
+                                                                 {"slope", "--slope"},
+                                                                 {"faint", "--faint"},
+                                                                 {"complete_to", "--complete-to"},
+                                                                 {"stars", "--number"},
+                                                                 {"density", "--density"}}};
+
+/// Problems of a request name its fields; here they are options.
+StarCatalogue made(const FieldOptions& options) {
+  try {
+    return options.extend.empty() ? synthetic(options) : extended(options);
+  } catch (const InputError& error) {
+    std::vector<Problem> problems = error.problems();
+    for (Problem& problem : problems)
+      for (const auto& [field, option] : kOptions)
+        if (problem.parameter == field) problem.parameter = option;
+    throw InputError(std::move(problems));
+  }
+}
+
 }  // namespace
 
 int field(const FieldOptions& options) {
   if (std::filesystem::exists(options.output) && !options.overwrite)
     throw InputError(
         Problem{.file = options.output, .expected = "another -o FILE, or --overwrite", .message = "the file exists"});
-  const StarCatalogue catalogue = options.extend.empty() ? synthetic(options) : extended(options);
+  if (!options.extend.empty()) require_files({options.extend});
+  const bool has_region = options.radius != 0.0 || (options.width != 0.0 && options.height != 0.0);
+  if (options.extend.empty() && !has_region)
+    throw InputError(Problem{.parameter = "--radius",
+                             .expected = "--radius DEG, or --width DEG and --height DEG",
+                             .message = "the size of the region is not clear"});
+  if (options.extend.empty() && options.number.has_value() == options.density.has_value())
+    throw InputError(Problem{.parameter = "--number",
+                             .expected = "either --number N or --density N/DEG2",
+                             .message = "how many stars is not clear"});
+  const StarCatalogue catalogue = made(options);
   write_catalogue_csv(options.output, catalogue);
   for (const std::string& note : catalogue.notes) fmt::print("{}\n", note);
   fmt::print("{} stars: {}\n", catalogue.stars.size(), options.output);

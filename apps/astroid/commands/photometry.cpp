@@ -8,15 +8,17 @@
 #include "astroid/core/error.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "commands/commands.hpp"
+#include "commands/configuration.hpp"
 
 namespace astroid::commands {
 
 namespace {
 
+constexpr std::string_view kGaussian = "gaussian:";
+
 /// gaussian:SIGMA_PX or a FITS file; nothing without --psf.
 std::shared_ptr<const PixelPsf> read_psf(const std::string& text) {
   if (text.empty()) return nullptr;
-  constexpr std::string_view kGaussian = "gaussian:";
   if (text.starts_with(kGaussian)) {
     const std::optional<double> sigma = parse_number(text.substr(kGaussian.size()));
     if (!sigma)
@@ -73,6 +75,10 @@ std::filesystem::path output_for(const PhotometryOptions& options, const std::st
 }  // namespace
 
 int photometry(const PhotometryOptions& options) {
+  std::vector<std::string> inputs = options.images;
+  inputs.push_back(options.catalogue);
+  if (!options.psf.empty() && !options.psf.starts_with(kGaussian)) inputs.push_back(options.psf);
+  require_files(inputs);
   ImagePhotometrySettings settings;
   settings.psf = read_psf(options.psf);
   if (options.method == "mask") settings.method = PhotometryMethod::kMask;

@@ -14,6 +14,7 @@ RunOptions run_options(const AssessOptions& options, const std::string& progress
   run.folder = options.run.folder;
   run.existing = options.run.overwrite ? ExistingProducts::kOverwrite : ExistingProducts::kRefuse;
   run.threads = thread_count(options.run.threads);
+  run.command_line = options.run.command_line;
   run.progress = progress_bar(progress);
   return run;
 }

@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <system_error>
 #include <utility>
 
 #include "astroid/core/error.hpp"
 #include "astroid/core/fits_reader.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/pipeline/ground.hpp"
+#include "astroid/pipeline/run_record.hpp"
 #include "folders.hpp"
 #include "report_run.hpp"
 
@@ -22,6 +24,15 @@ InputError not_a_run(const std::filesystem::path& folder, const std::string& wha
   return InputError(Problem{.file = folder.string(),
                             .expected = "the folder of a finished `astroid assess` with Output/Lightcurves not none",
                             .message = what});
+}
+
+/// Exposure 0 of the first camera, if the run kept it: the report shows it.
+Image<float, unit::Adu> first_frame(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "images" / "camera1_000000.fits";
+  if (!std::filesystem::exists(file)) return {};
+  const FitsReader fits(file);
+  if (fits.units().front().axes.size() != 2) return {};  // windows
+  return fits.read_image<float, unit::Adu>(1);
 }
 
 /// What the stream would have left, read back from its products.
@@ -91,11 +102,17 @@ AssessResult analyse_run(const std::filesystem::path& folder, const Configuratio
   const Ground ground = perfect_ground(*run.scene);
   const std::vector<StarEstimator> estimators =
       build_estimators(*run.scene->layout(), ground.model, configuration.mission.photometry);
-  const StreamResult stream = read_stream(light_curves, *run.scene, estimators);
+  StreamResult stream = read_stream(light_curves, *run.scene, estimators);
+  stream.first_frame = first_frame(folder);
   create_folder(output);
-  const ReportedRun reported = report_run(
-      output,
-      {.configuration = configuration, .prepared = run, .ground = ground, .estimators = estimators, .stream = stream});
+  const ReportedRun reported = report_run(output, {.configuration = configuration,
+                                                   .prepared = run,
+                                                   .ground = ground,
+                                                   .estimators = estimators,
+                                                   .stream = stream,
+                                                   .light_curves = light_curves});
+  std::error_code ignored;
+  if (std::filesystem::equivalent(folder, output, ignored)) refresh_run_record(folder);
   return {.folder = output, .report = reported.index, .verdict = reported.verdict, .timings = {}};
 }
 
@@ -110,16 +127,20 @@ std::vector<std::filesystem::path> export_stars(const std::filesystem::path& fol
                                 .cycle = mission.simulation.cycle.value(),
                                 .exposure_time = mission.simulation.exposure_time.value(),
                                 .history = {}};
+  // All are read before the first is written: a wrong id leaves nothing behind.
+  std::vector<LightCurve> curves;
+  for (const std::string& id : ids) curves.push_back(read_light_curve(light_curves.string(), id, 0));
   create_folder(output);
   std::vector<std::filesystem::path> files;
-  for (const std::string& id : ids) {
+  for (std::size_t i = 0; i < ids.size(); ++i) {
+    const std::string& id = ids[i];
     std::string name = id;
     std::ranges::replace_if(
         name, [](char c) { return c == '/' || c == ' '; }, '_');
-    const LightCurve curve = read_light_curve(light_curves.string(), id, 0);
     files.push_back(output / fmt::format("lightcurve_{}.fits", name));
-    export_light_curve(files.back().string(), curve, header);
+    export_light_curve(files.back().string(), curves[i], header);
   }
+  refresh_run_record(output.parent_path());
   return files;
 }
 

@@ -50,9 +50,12 @@ AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions
   const StreamResult stream = stream_exposures(
       run.scene, run.plan, estimators, {.threads = options.threads, .folder = working, .progress = options.progress});
   const Clock::time_point analysis_begin = Clock::now();
-  const ReportedRun reported = report_run(
-      working,
-      {.configuration = configuration, .prepared = run, .ground = ground, .estimators = estimators, .stream = stream});
+  const ReportedRun reported = report_run(working, {.configuration = configuration,
+                                                    .prepared = run,
+                                                    .ground = ground,
+                                                    .estimators = estimators,
+                                                    .stream = stream,
+                                                    .light_curves = working / "photometry" / "lightcurves.fits"});
   write_run_record(folder, {.command_line = options.command_line,
                             .threads = options.threads,
                             .scene = run.scene.get(),

@@ -99,10 +99,9 @@ std::vector<BudgetRow> budget_rows(const Scene& scene) {
 }
 
 /// Light curves of clean targets spread over the magnitudes, read back from the file.
-std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path& folder,
+std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path& file,
                                                     std::span<const TargetMetrics> targets,
                                                     std::span<const double> reference) {
-  const std::filesystem::path file = folder / "photometry" / "lightcurves.fits";
   std::vector<std::size_t> clean;
   for (std::size_t t = 0; t < targets.size(); ++t)
     if (is_clean(targets[t])) clean.push_back(t);
@@ -159,7 +158,7 @@ ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& r
   ReportInput input;
   input.title = fmt::format("{} targets around RA {:.4f}°, Dec {:.4f}°", targets.size(), mission.satellite.ra.value(),
                             mission.satellite.dec.value());
-  input.requirement = plato_requirement(mission.telescope.cameras);
+  input.requirement = plato_requirement(mission.telescope.cameras, bin_hours);
   input.verdict = verdict(targets, setup, bin_hours, input.requirement);
   input.setup = setup;
   input.bin_hours = bin_hours;
@@ -179,7 +178,7 @@ ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& r
     input.image_caption =
         fmt::format("Exposure 0 of camera 1, {} x {} px", run.stream.first_frame.nx(), run.stream.first_frame.ny());
   }
-  input.light_curves = example_light_curves(folder, targets, run.stream.reference);
+  input.light_curves = example_light_curves(run.light_curves, targets, run.stream.reference);
   const WrittenReport written = write_report(folder, input);
   reported.index = written.index;
   reported.verdict = input.verdict;

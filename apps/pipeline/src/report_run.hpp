@@ -19,6 +19,7 @@ struct MeasuredRun {
   const Ground& ground;
   const std::vector<StarEstimator>& estimators;
   const StreamResult& stream;
+  std::filesystem::path light_curves;  ///< their file; the report shows some, if it is there
 };
 
 struct ReportedRun {

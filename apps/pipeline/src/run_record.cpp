@@ -11,8 +11,10 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <thread>
 
 #include "astroid/core/atomic_file.hpp"
@@ -61,6 +63,13 @@ std::string processor_name() {
   }
   std::fclose(file);
   return name;
+}
+
+nlohmann::ordered_json product_list(std::span<const Product> products) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Product& product : products)
+    list.push_back({{"path", product.path}, {"bytes", product.bytes}, {"sha256", product.sha256}});
+  return list;
 }
 
 }  // namespace
@@ -122,11 +131,19 @@ void write_run_record(const ProductFolder& folder, const RunRecord& record) {
     json["electrons_lost_by_blooming"] = record.stream->lost_electrons;
     json["pixels_clipped_by_adc"] = record.stream->clipped_pixels;
   }
-  json["peak_memory_bytes"] = peak_memory_bytes();
+  json["peak_memory_bytes"] = static_cast<std::int64_t>(peak_memory_bytes());
   json["warnings"] = record.warnings;
-  for (const Product& product : folder.products())
-    json["products"].push_back({{"path", product.path}, {"bytes", product.bytes}, {"sha256", product.sha256}});
+  json["products"] = product_list(folder.products());
   write_text_file(folder.file("run.json"), json.dump(2) + "\n");
+}
+
+void refresh_run_record(const std::filesystem::path& folder) {
+  const std::filesystem::path file = folder / "run.json";
+  if (!std::filesystem::exists(file)) return;
+  auto json = nlohmann::ordered_json::parse(read_text_file(file), nullptr, false);
+  if (!json.is_object()) return;  // somebody else's
+  json["products"] = product_list(products_in(folder));
+  write_text_file(file, json.dump(2) + "\n");
 }
 
 }  // namespace astroid

@@ -86,6 +86,7 @@ TEST(Requirement, OfPlatoGoesWithTheRootOfTheCameras) {
   EXPECT_DOUBLE_EQ(plato_requirement(6).ppm, 100.0);
   EXPECT_NEAR(plato_requirement(12).ppm, 70.7, 0.05);
   EXPECT_NEAR(plato_requirement(18).ppm, 57.7, 0.05);
+  EXPECT_DOUBLE_EQ(plato_requirement(24, 4.0).ppm, 25.0);
 }
 
 TEST(Compliance, CountsTargetsWithinTheMagnitude) {

@@ -68,8 +68,9 @@ struct Requirement {
   double magnitude = 0.0;  ///< holds for stars this bright or brighter
   double ppm = 0.0;
 };
-/// PLATO's: 50 ppm in 1 h at V = 11 with 24 cameras, as 50 sqrt(24 / cameras). @source GutierrezCanales2026
-Requirement plato_requirement(int cameras);
+/// PLATO's: 50 ppm in 1 h at V = 11 with 24 cameras, as 50 sqrt(24 / cameras), and in other bins as random noise goes,
+/// with 1 / sqrt(bin_hours). @source GutierrezCanales2026
+Requirement plato_requirement(int cameras, double bin_hours = 1.0);
 
 /// The fraction of clean targets within the requirement's magnitude whose noise (scaled to N cameras) complies.
 struct Compliance {

@@ -30,8 +30,13 @@ struct Product {
   std::string sha256;
 };
 
+/// Every complete file of a folder but run.json, in the order of their names, with its checksum.
+/// @throws EnvironmentError(path, cause)
+[[nodiscard]] std::vector<Product> products_in(const std::filesystem::path& folder);
+
 /// The folder that `-o DIR` names. A run writes in DIR.partial; commit() renames it to DIR. A run that ends otherwise
-/// leaves DIR.partial (nothing if it is empty). A lock keeps two runs from writing the same folder.
+/// leaves DIR.partial (nothing if it is empty: neither it nor the folders above that were made for it). A lock keeps
+/// two runs from writing the same folder.
 /// @throws EnvironmentError(path, cause) when the disk or permissions fail, from every member function.
 class ProductFolder {
  public:
@@ -69,6 +74,7 @@ class ProductFolder {
   void remove_unfinished_files() const;
 
   std::filesystem::path path_;
+  std::vector<std::filesystem::path> made_;  // folders above, outermost first
   bool resumed_ = false;
   bool committed_ = false;
   int lock_ = -1;

@@ -1,6 +1,7 @@
 // run.json: everything needed to know where a product came from.
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,10 @@ struct RunRecord {
 
 /// Writes run.json into the folder, with a checksum of every other product in it. @throws EnvironmentError
 void write_run_record(const ProductFolder& folder, const RunRecord& record);
+
+/// Lists the products of a finished run anew, after an analysis has replaced some. Nothing where there is no run.json.
+/// @throws EnvironmentError
+void refresh_run_record(const std::filesystem::path& folder);
 
 /// Versions of the program and of the libraries it runs on, as `astroid doctor` prints them.
 struct ComponentVersion {
