@@ -41,6 +41,14 @@ TEST(ProductFolder, AppearsUnderItsNameWhenCommitted) {
   EXPECT_FALSE(fs::exists(partial_path(path)));
 }
 
+TEST(ProductFolder, LeavesNoFoldersOfARunThatWroteNothing) {
+  const test::TemporaryFolder parent;
+  fs::create_directory(parent.path() / "old");
+  { const ProductFolder folder(parent.path() / "old" / "new" / "newer" / "results", ExistingProducts::kRefuse); }
+  EXPECT_FALSE(fs::exists(parent.path() / "old" / "new"));
+  EXPECT_TRUE(fs::exists(parent.path() / "old")) << "it was there before";
+}
+
 TEST(ProductFolder, RefusesToTouchFinishedProducts) {
   const test::TemporaryFolder parent;
   const fs::path path = parent.path() / "results";
@@ -89,8 +97,9 @@ TEST(ProductFolder, ResumesAnUnfinishedRun) {
     write_text_file(folder.file("images/0002.fits.partial"), "pix");
   }
   EXPECT_FALSE(fs::exists(path));
-  EXPECT_THAT([&] { ProductFolder(path, ExistingProducts::kRefuse); },
-              ThrowsMessage<InputError>(AllOf(HasSubstr("results.partial: an unfinished run"), HasSubstr("--overwrite"))));
+  EXPECT_THAT(
+      [&] { ProductFolder(path, ExistingProducts::kRefuse); },
+      ThrowsMessage<InputError>(AllOf(HasSubstr("results.partial: an unfinished run"), HasSubstr("--overwrite"))));
   {
     ProductFolder folder(path, ExistingProducts::kResume);
     EXPECT_TRUE(folder.resumed());
