@@ -13,13 +13,18 @@ namespace {
 
 using namespace commands;
 
+/// Without this a number below 0 would be taken modulo 2^64.
+std::string not_negative(const std::string& text) {
+  return text.starts_with('-') ? text + " is below 0" : std::string();
+}
+
 void add_configuration(CLI::App* app, ConfigurationOptions& options) {
   app->add_option("CONFIG", options.configuration, "configuration file, or the name of a mission preset (plato)")
       ->required();
   app->add_option("--set", options.set, "override a parameter: Path/To/Parameter=value (repeatable)")
       ->type_name("PATH=VALUE")
       ->allow_extra_args(false);
-  app->add_option("--seed", options.seed, "override Simulation/Seed")->type_name("N");
+  app->add_option("--seed", options.seed, "override Simulation/Seed")->type_name("N")->check(not_negative);
 }
 
 void add_overwrite(CLI::App* app, bool& overwrite) {
@@ -177,7 +182,10 @@ int run_command_line(int argc, char** argv) {
                   "magnitude to which the extended catalogue is complete (default: its turn-over)")
       ->type_name("MAG");
   sub->add_option("--passband", field_options.passband, "of the magnitudes")->capture_default_str();
-  sub->add_option("--seed", field_options.seed, "of the random numbers")->type_name("N")->capture_default_str();
+  sub->add_option("--seed", field_options.seed, "of the random numbers")
+      ->type_name("N")
+      ->capture_default_str()
+      ->check(not_negative);
   sub->add_option("-o,--output", field_options.output, "catalogue to write (CSV)")->type_name("FILE")->required();
   add_overwrite(sub, field_options.overwrite);
   sub->callback([&] { command = [&] { return field(field_options); }; });

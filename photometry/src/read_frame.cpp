@@ -87,6 +87,9 @@ class FrameReader {
     const bool cube = axes.size() > 2 && axes[2] > 1;
     const auto image = cube ? reader_.read_plane<float, unit::Adu>(unit_, options_.plane)
                             : reader_.read_image<float, unit::Adu>(unit_);
+    if (cube)
+      file_.notes.push_back(
+          fmt::format("The image is a cube of {} planes; only plane {} was read.", axes[2], options_.plane));
     const auto layout = std::make_shared<const PixelLayout>(std::vector<Rectangle>{{0, 0, image.nx(), image.ny()}});
     file_.frame.pixels = Plane<float, unit::Adu>(layout);
     file_.frame.flags = Plane<std::uint8_t, unit::Flags>(layout);

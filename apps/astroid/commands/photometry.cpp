@@ -66,8 +66,8 @@ std::vector<SourceRequest> read_requests(const std::string& file) {
 
 /// sources.csv for one image; sources_NAME.csv for each of several.
 std::filesystem::path output_for(const PhotometryOptions& options, const std::string& image) {
+  if (options.images.size() == 1) return options.output;
   const std::filesystem::path output = options.output;
-  if (options.images.size() == 1) return output;
   return output.parent_path() / fmt::format("{}_{}{}", output.stem().string(),
                                             std::filesystem::path(image).stem().string(), output.extension().string());
 }

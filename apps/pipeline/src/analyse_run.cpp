@@ -86,6 +86,7 @@ AssessResult analyse_run(const std::filesystem::path& folder, const Configuratio
                          const std::filesystem::path& output) {
   const std::filesystem::path configuration_file = folder / "config.xml";
   const std::filesystem::path light_curves = folder / "photometry" / "lightcurves.fits";
+  if (!std::filesystem::is_directory(folder)) throw not_a_run(folder, "there is no such folder");
   if (!std::filesystem::exists(configuration_file)) throw not_a_run(folder, "there is no config.xml in it");
   if (!std::filesystem::exists(light_curves)) throw not_a_run(folder, "there is no photometry/lightcurves.fits in it");
   std::vector<Problem> problems;
@@ -119,6 +120,7 @@ AssessResult analyse_run(const std::filesystem::path& folder, const Configuratio
 std::vector<std::filesystem::path> export_stars(const std::filesystem::path& folder, std::span<const std::string> ids,
                                                 const std::filesystem::path& output) {
   const std::filesystem::path light_curves = folder / "photometry" / "lightcurves.fits";
+  if (!std::filesystem::is_directory(folder)) throw not_a_run(folder, "there is no such folder");
   if (!std::filesystem::exists(light_curves)) throw not_a_run(folder, "there is no photometry/lightcurves.fits in it");
   const Mission mission = read_configuration(folder / "config.xml").mission;
   const LightCurveHeader header{.exposures = mission.simulation.exposures,

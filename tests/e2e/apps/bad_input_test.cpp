@@ -88,6 +88,9 @@ TEST_F(BadInput, AnUnknownOptionOrCommandIsRefused) {
   EXPECT_THAT(refused({"assess"}), HasSubstr("CONFIG"));
   EXPECT_THAT(refused({"assess", "small.xml", "--threads", "many"}), HasSubstr("--threads"));
   EXPECT_THAT(refused({"assess", "small.xml", "--threads", "0"}), HasSubstr("--threads"));
+  EXPECT_THAT(refused({"plan", "small.xml", "--seed", "-4"}), AllOf(HasSubstr("--seed"), HasSubstr("-4")));
+  EXPECT_THAT(refused({"field", "--radius", "1", "--number", "9", "--seed", "-4", "-o", "field.csv"}),
+              AllOf(HasSubstr("--seed"), HasSubstr("-4")));
   EXPECT_THAT(refused({}), HasSubstr("command"));
 }
 
@@ -97,7 +100,7 @@ TEST_F(BadInput, AMissingFileIsRefusedByItsName) {
   EXPECT_THAT(refused({"init", "platon"}), HasSubstr("plato"));
   EXPECT_THAT(refused({"photometry", "absent.fits", "other.fits", "--catalogue", "stars.csv"}),
               AllOf(HasSubstr("absent.fits"), HasSubstr("other.fits")));
-  EXPECT_THAT(refused({"analyse", "absent"}), HasSubstr("absent"));
+  EXPECT_THAT(refused({"analyse", "absent"}), HasSubstr("absent: there is no such folder"));
   EXPECT_THAT(refused({"analyse", "--truth", "absent.csv", "--sources", "stars.csv", "-o", "result"}),
               HasSubstr("absent.csv"));
   EXPECT_THAT(refused({"analyse"}), AllOf(HasSubstr("--truth"), HasSubstr("--sources")));

@@ -67,6 +67,18 @@ TEST_F(PhotometryOfImages, OfSeveralImagesWritesATableForEach) {
     EXPECT_EQ(test::read_csv(folder_.path() / name).rows(), 25U) << name;
 }
 
+TEST_F(PhotometryOfImages, OfACubeOfWindowsSaysThatItReadOnePlane) {
+  ASSERT_EQ(
+      test::run_astroid({"simulate", "small.xml", "-o", "windows", "--set", "CCD/Window=14"}, folder_.path()).exit_code,
+      0);
+  folder_.write("pixels.csv", "id,x,y\nfirst,6.5,6.5\n");
+  const test::ProgramResult run = test::run_astroid(
+      {"photometry", "windows/images/camera1_000000.fits", "--catalogue", "pixels.csv", "--radius", "2"},
+      folder_.path());
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("cube of 25 planes; only plane 0 was read"));
+}
+
 TEST_F(PhotometryOfImages, IsComparedWithTheTruthById) {
   ASSERT_EQ(test::run_astroid({"photometry", "run/images/camera1_000000.fits", "--catalogue", "run/truth/stars.csv"},
                               folder_.path())
