@@ -47,8 +47,7 @@ std::vector<std::string> mission_names() {
         if (entry.path().extension() == ".xml") names.push_back(entry.path().stem().string());
     }
   std::ranges::sort(names);
-  const auto repeated = std::ranges::unique(names);
-  names.erase(repeated.begin(), repeated.end());
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
@@ -57,7 +56,7 @@ std::filesystem::path find_configuration(const std::string& name) {
   if (looks_like_a_path || std::filesystem::is_regular_file(name)) return name;
   for (const auto& folder : data_folders())
     for (const std::string& missions : mission_folders()) {
-      const std::filesystem::path preset = folder / missions / (name + ".xml");
+      std::filesystem::path preset = folder / missions / (name + ".xml");
       if (std::filesystem::exists(preset)) return preset;
     }
   throw InputError(
