@@ -17,12 +17,12 @@ struct PairStatistics {
 };
 
 /// Two exposures of a flat field of `level` e- per pixel (and one negligible star, since a scene needs a target).
-PairStatistics flat_pair(double level, double readout, double gain) {
+PairStatistics flat_pair(double level, Electrons readout, Gain gain) {
   constexpr int kSide = 500;
   Mission mission = test::bare_mission(kSide, kSide);
   mission.field.sky_background = ElectronsPerSecond(level / 21.0);
-  mission.ccd.readout_noise = Electrons(readout);
-  mission.ccd.gain = Gain(gain);
+  mission.ccd.readout_noise = readout;
+  mission.ccd.gain = gain;
   mission.ccd.bias = Adu(1000.0);
   const auto scene = std::make_shared<const Scene>(mission, test::lab_catalogue({{250.0, 250.0, 1e-6}}));
   const Simulator simulator(scene, std::make_shared<const Plan>(make_plan(*scene)), 0);
@@ -44,7 +44,7 @@ PairStatistics flat_pair(double level, double readout, double gain) {
 }
 
 TEST(PhotonTransfer, FlatFieldHasPoissonVariance) {
-  const PairStatistics flat = flat_pair(1e4, 0.0, 1.0);
+  const PairStatistics flat = flat_pair(1e4, Electrons(0.0), Gain(1.0));
   const double n = 500.0 * 500.0;
   EXPECT_NEAR(flat.mean - 1000.0, 1e4, 5.0 * 100.0 / std::sqrt(2.0 * n));
   // Variance of the difference is twice the mean, plus twice the quantisation 1/12.
@@ -54,11 +54,11 @@ TEST(PhotonTransfer, FlatFieldHasPoissonVariance) {
 TEST(PhotonTransfer, CurveGivesBackGainAndReadoutNoise) {
   constexpr double kGain = 20.951;
   constexpr double kReadout = 50.2;
-  const PairStatistics dark = flat_pair(1e-9, kReadout, kGain);
+  const PairStatistics dark = flat_pair(1e-9, Electrons(kReadout), Gain(kGain));
   double sxx = 0.0;
   double sxy = 0.0;
   for (int i = 1; i <= 12; ++i) {
-    const PairStatistics flat = flat_pair(4000.0 * i, kReadout, kGain);
+    const PairStatistics flat = flat_pair(4000.0 * i, Electrons(kReadout), Gain(kGain));
     const double signal = flat.mean - dark.mean;
     const double variance = 0.5 * (flat.difference_variance - dark.difference_variance);
     // Weighted by the variance of the variance, which grows as the signal squared.

@@ -1,5 +1,6 @@
 #include "astroid/sim/plan.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "astroid/test/scenes.hpp"
