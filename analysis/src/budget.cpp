@@ -43,8 +43,8 @@ StarEstimator estimator_of_first(const Mission& mission, const PixelPsf& psf, st
   return build_estimators(layout, model, photometry).front();
 }
 
-std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& psf,
-                                       std::span<const double> magnitudes) {
+std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& psf, std::span<const double> magnitudes,
+                                       std::span<const BudgetNeighbour> neighbours) {
   const RunSetup setup = run_setup(mission);
   const StarMotion motion = star_motion(mission, 0.0, 0.0);
   const double background = expected_pixel_noise(mission).background;
@@ -58,8 +58,12 @@ std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& p
         (electron_rate(Magnitude(magnitude), mission.telescope.zero_point) * mission.simulation.exposure_time).value();
     row.peak_electrons = row.electrons * peak;
     row.saturated = row.peak_electrons + background >= saturation_electrons(mission.ccd);
-    const std::array<FieldStar, 1> star{FieldStar{"", {0.0, 0.0}, row.electrons}};
-    const StarEstimator estimator = estimator_of_first(mission, psf, star);
+    std::vector<FieldStar> stars{FieldStar{"", {0.0, 0.0}, row.electrons}};
+    stars.reserve(neighbours.size() + 1);
+    for (const BudgetNeighbour& n : neighbours)
+      stars.push_back({"", {n.dx, n.dy}, row.electrons * flux_ratio(n.fainter)});
+    const StarEstimator estimator = estimator_of_first(mission, psf, stars);
+    row.spr_tot = estimator.spr_total;
     row.mask_pixels = estimator.mask_pixels;
     row.enclosed_fraction = estimator.enclosed_fraction;
     row.nsr_exposure = estimator.nsr_exposure;

@@ -156,6 +156,10 @@ int run_command_line(int argc, char** argv) {
       ->type_name("MAG")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
+  sub->add_option("--neighbour", budget_options.neighbours,
+                  "a star beside each: columns and rows from it, and magnitudes fainter (repeatable)")
+      ->type_name("DX,DY,DMAG")
+      ->allow_extra_args(false);
   sub->add_option("-o,--output", budget_options.output, "write the table as CSV")->type_name("FILE");
   add_overwrite(sub, budget_options.overwrite);
   sub->callback([&] { command = [&] { return budget(budget_options); }; });

@@ -158,8 +158,7 @@ std::span<const Column<ContaminationRow>> contamination_columns() {
 std::span<const Column<BudgetRow>> budget_columns() {
   static const std::vector<Column<BudgetRow>> columns = [] {
     std::vector<Column<BudgetRow>> c;
-    c.push_back(number("mag", "mag",
-                       "magnitude in the passband of the zero point, of an isolated star at the centre of a pixel",
+    c.push_back(number("mag", "mag", "magnitude in the passband of the zero point, of a star at the centre of a pixel",
                        &BudgetRow::mag));
     c.push_back(number("electrons", "e-", "electrons per exposure, all of the PSF", &BudgetRow::electrons));
     c.push_back(number("peak_electrons", "e-", "of them in the brightest pixel", &BudgetRow::peak_electrons));
@@ -176,6 +175,8 @@ std::span<const Column<BudgetRow>> budget_columns() {
                        "noise of the mean over one bin (Analysis/Bin, 1 h unless set) with all cameras",
                        &BudgetRow::nsr_1h_ppm));
     add_causes(c, "part of nsr_1h_ppm: ");
+    c.push_back(
+        number("spr_tot", "", "share of the given neighbours in the star light of the aperture", &BudgetRow::spr_tot));
     return c;
   }();
   return columns;

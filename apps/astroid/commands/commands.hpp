@@ -42,7 +42,8 @@ struct BudgetOptions {
   ConfigurationOptions configuration;
   bool analytic = false;
   double mag_from = 8.0, mag_to = 13.0, mag_step = 0.5;
-  std::string output;  ///< noise_budget.csv; empty: the table on the screen only
+  std::vector<std::string> neighbours;  ///< DX,DY,DMAG each
+  std::string output;                   ///< noise_budget.csv; empty: the table on the screen only
   bool overwrite = false;
 };
 int budget(const BudgetOptions& options);

@@ -119,6 +119,21 @@ StarEstimator with_neighbour(double dx, double fainter) {
   return estimator_of_first(mission, *psf, stars);
 }
 
+TEST(AnalyticBudget, OfAStarWithANeighbourIsThePublishedOne) {
+  const auto psf = make_gaussian_psf(0.6);
+  const std::vector<double> magnitude{11.0};
+  const std::vector<BudgetNeighbour> equal{{.dx = 1.0, .dy = 0.0, .fainter = DeltaMag(0.0)}};
+  const BudgetRow row = analytic_budget(mask_mission(), *psf, magnitude, equal).front();
+  EXPECT_EQ(row.mask_pixels, 7);
+  EXPECT_NEAR(row.spr_tot, 0.38153972, 1e-7);
+  EXPECT_NEAR(row.nsr_1h_ppm / 62.6266, 1.0, 1e-6);
+  const std::vector<BudgetNeighbour> fainter{{.dx = 2.0, .dy = 0.0, .fainter = DeltaMag(2.0)}};
+  const BudgetRow far = analytic_budget(mask_mission(), *psf, magnitude, fainter).front();
+  EXPECT_EQ(far.mask_pixels, 9);
+  EXPECT_NEAR(far.spr_tot, 0.03144899, 1e-7);
+  EXPECT_NEAR(far.nsr_1h_ppm / 50.0948, 1.0, 1e-6);
+}
+
 TEST(Contamination, OfTwoStarsIsThePublishedOne) {
   const StarEstimator equal = with_neighbour(1.0, 0.0);
   EXPECT_EQ(equal.mask_pixels, 7);

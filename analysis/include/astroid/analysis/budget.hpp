@@ -11,7 +11,7 @@
 
 namespace astroid {
 
-/// A row of analysis/noise_budget.csv: an isolated star at the centre of a pixel on the optical axis.
+/// A row of analysis/noise_budget.csv: a star at the centre of a pixel on the optical axis.
 struct BudgetRow {
   double mag = 0.0;             ///< in the passband of the zero point
   double electrons = 0.0;       ///< per exposure, all of the PSF
@@ -22,13 +22,22 @@ struct BudgetRow {
   double nsr_exposure = 0.0;  ///< one exposure, one camera, without jitter
   double nsr_1h_ppm = 0.0;    ///< one bin, all cameras
   NoiseByCause causes;        ///< of it, ppm
+  double spr_tot = 0.0;       ///< share of the neighbours in the star light of the aperture (F20)
+};
+
+/// A star beside the one that the budget is of.
+struct BudgetNeighbour {
+  double dx = 0.0, dy = 0.0;  ///< px
+  DeltaMag fainter;           ///< by how much than the star; negative: brighter
 };
 
 /// The analytic budget of a mission. It uses the estimators of the photometry, so mask and aperture are those that a
 /// run would use.
-/// @param psf  of the mission.
+/// @param psf         of the mission.
+/// @param neighbours  of each star; none: isolated.
 /// @throws InputError when the photometry's settings contradict themselves.
-std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& psf, std::span<const double> magnitudes);
+std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& psf, std::span<const double> magnitudes,
+                                       std::span<const BudgetNeighbour> neighbours = {});
 
 /// Sky and dark current of one exposure, readout and quantisation noise of the mission's detector.
 PixelNoise expected_pixel_noise(const Mission& mission);
