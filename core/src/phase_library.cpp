@@ -3,12 +3,18 @@
 #include <algorithm>
 #include <cmath>
 
+#include "vector/stamp_kernels.hpp"
+
 namespace astroid::detail {
+
+namespace {
+constexpr int kBorder = 1;  // a tap lies in the pixel of the star or in one next to it
+}  // namespace
 
 PhaseLibrary::Extent PhaseLibrary::extent(double lower, double upper) {
   // A pixel n of a star at phase f in [0, 1) covers n - f - 1/2 … n - f + 1/2.
-  const int first = static_cast<int>(std::floor(lower - 0.5));
-  const int last = static_cast<int>(std::ceil(upper + 1.5));
+  const int first = static_cast<int>(std::floor(lower - 0.5)) - kBorder;
+  const int last = static_cast<int>(std::ceil(upper + 1.5)) + kBorder;
   return {first, last - first + 1};
 }
 
@@ -108,6 +114,26 @@ void PhaseLibrary::integrate(PixelPosition star, Rectangle box, std::span<double
                  double* to = fractions.data() + out;
                  for (std::size_t i = 0; i < count; ++i) to[i] += weight * from[i];
                });
+}
+
+void PhaseLibrary::add(PixelPosition star, double electrons, Rectangle box,
+                       const ImageView<double, unit::ExpectedElectrons>& image) const {
+  const Axis x = axis(star.x);
+  const Axis y = axis(star.y);
+  // Inside the border every tap has the pixel.
+  const Rectangle stamp = intersect(
+      box, {x.pixel + x_.first + kBorder, y.pixel + y_.first + kBorder, x_.size - 2 * kBorder, y_.size - 2 * kBorder});
+  if (stamp.empty()) return;
+  PrfStamp prf{.images = {}, .weights = {}, .image_stride = static_cast<std::size_t>(x_.size), .electrons = electrons};
+  std::size_t k = 0;
+  for (const Tap& tap_y : y.taps)
+    for (const Tap& tap_x : x.taps) {
+      const int column = stamp.x0 - (x.pixel + tap_x.shift + x_.first);
+      const int row = stamp.y0 - (y.pixel + tap_y.shift + y_.first);
+      prf.images[k] = this->image(tap_x.phase, tap_y.phase) + row * x_.size + column;
+      prf.weights[k++] = tap_x.weight * tap_y.weight;
+    }
+  add_prf_stamp(prf, stamp_pixels(image, stamp));
 }
 
 void PhaseLibrary::integrate_gradient(PixelPosition star, Rectangle box, std::span<double> dpdx,

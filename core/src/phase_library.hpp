@@ -22,6 +22,9 @@ class PhaseLibrary {
 
   void integrate(PixelPosition star, Rectangle box, std::span<double> fractions) const;
   void integrate_gradient(PixelPosition star, Rectangle box, std::span<double> dpdx, std::span<double> dpdy) const;
+  /// image += electrons × the fractions of integrate(), in the pixels of `box` that the library reaches.
+  void add(PixelPosition star, double electrons, Rectangle box,
+           const ImageView<double, unit::ExpectedElectrons>& image) const;
 
   [[nodiscard]] int phases() const { return phases_; }
   /// Memory of a library of so many phases, bytes.
@@ -45,6 +48,7 @@ class PhaseLibrary {
     int pixel = 0;  // whose centre is at or below the star
     std::array<Tap, kTaps> taps{};
   };
+  // With an empty border, so that the neighbouring phases of a star cover the same pixels.
   struct Extent {
     int first = 0;  // pixel relative to the star's, of the library's first column or row
     int size = 0;

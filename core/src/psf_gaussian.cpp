@@ -4,10 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "astroid/core/math.hpp"
 #include "astroid/core/psf.hpp"
+#include "gaussian_profiles.hpp"
 #include "gaussian_tail.hpp"
+#include "vector/stamp_kernels.hpp"
 
 namespace astroid {
 
@@ -32,6 +35,14 @@ class GaussianPsf final : public PixelPsf {
  public:
   explicit GaussianPsf(double sigma)
       : sigma_(sigma), per_root_two_sigma_(1.0 / (kRootTwo * sigma)), tails_(detail::erfc_table()) {}
+
+  /// With the table that add_star() is fast by.
+  static std::shared_ptr<const GaussianPsf> with_profiles(double sigma) {
+    auto psf = std::make_shared<GaussianPsf>(sigma);
+    if (sigma >= detail::GaussianProfiles::kNarrowest && sigma <= detail::GaussianProfiles::kWidest)
+      psf->profiles_.emplace(sigma);
+    return psf;
+  }
 
   void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const override {
     ASTROID_CHECK_EQ(fractions.size(), box.size());
@@ -108,6 +119,33 @@ class GaussianPsf final : public PixelPsf {
         add_product({x, y, nx, ny}, box.nx, x_slope, y_slope, fractions);
       }
     }
+  }
+
+  void add_star(const StarLight& star, const ImageView<double, unit::ExpectedElectrons>& image,
+                std::vector<double>& scratch) const override {
+    if (!profiles_) {
+      PixelPsf::add_star(star, image, scratch);
+      return;
+    }
+    Rectangle box = intersect(stamp_box(star.centre, star.half_width), image.area());
+    if (box.empty()) return;
+    const MotionCovariance motion = star.broadened ? star.motion : MotionCovariance{};
+    detail::SeparableStamp stamp{.x = profiles_->axis(star.centre.x, motion.sxx),
+                                 .y = profiles_->axis(star.centre.y, motion.syy),
+                                 .electrons = star.electrons,
+                                 .covariance = motion.sxy,
+                                 .table_stride = profiles_->stride()};
+    box = intersect(box, {stamp.x.first, stamp.y.first, stamp.x.size, stamp.y.size});
+    if (box.empty()) return;
+    if (motion.sxy != 0.0) {
+      stamp.x_slope = profiles_->slope(star.centre.x);
+      stamp.y_slope = profiles_->slope(star.centre.y);
+      stamp.x_slope.rows += box.x0 - stamp.x.first;
+      stamp.y_slope.rows += box.y0 - stamp.y.first;
+    }
+    stamp.x.rows += box.x0 - stamp.x.first;
+    stamp.y.rows += box.y0 - stamp.y.first;
+    detail::add_separable_stamp(stamp, detail::stamp_pixels(image, box));
   }
 
   // Outside a square of half-width r lies 1 - erf(q)^2 with q = r / (sqrt(2) sigma), so erfc(q) = lost / (1 + sqrt(1 -
@@ -209,6 +247,7 @@ class GaussianPsf final : public PixelPsf {
   double sigma_;
   double per_root_two_sigma_;
   const detail::ErfcTable& tails_;
+  std::optional<detail::GaussianProfiles> profiles_;
 };
 
 }  // namespace
@@ -220,7 +259,7 @@ std::shared_ptr<const PixelPsf> make_gaussian_psf(double sigma) {
                              .expected = "a finite number of pixels >= 0",
                              .message = "the width of the PSF is not usable"});
   }
-  return std::make_shared<const GaussianPsf>(sigma);
+  return GaussianPsf::with_profiles(sigma);
 }
 
 }  // namespace astroid

@@ -7,6 +7,7 @@
 
 #include "astroid/core/psf.hpp"
 #include "flux_spline.hpp"
+#include "motion_nodes.hpp"
 #include "phase_library.hpp"
 
 namespace astroid {
@@ -51,6 +52,19 @@ class PrfPsf final : public PixelPsf {
       return;
     }
     library_.integrate_gradient(centre, box, dpdx, dpdy);
+  }
+
+  void add_star(const StarLight& star, const ImageView<double, unit::ExpectedElectrons>& image,
+                std::vector<double>& /*scratch*/) const override {
+    const Rectangle box = intersect(stamp_box(star.centre, star.half_width), image.area());
+    if (box.empty()) return;
+    if (!star.broadened) {
+      library_.add(star.centre, star.electrons, box, image);
+      return;
+    }
+    for (const detail::MotionNode& node : detail::motion_nodes(star.motion))
+      library_.add({star.centre.x + node.shift.dx, star.centre.y + node.shift.dy}, star.electrons * node.weight, box,
+                   image);
   }
 
   // From the outside inwards, since a table may have negative samples: the first square that loses too much ends it.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "astroid/core/frame.hpp"
+#include "astroid/core/plane_kernels.hpp"
 
 namespace astroid {
 
@@ -19,21 +20,19 @@ double pour(double& pixel, double full_well, double carried) {
   return carried - taken;
 }
 
-}  // namespace
-
-namespace {
-
-/// Columns that have any charge above the full well, found row by row as the memory lies.
-std::vector<int> overfull_columns(const ImageView<double, unit::SampledElectrons>& electrons, double full_well) {
+/// Columns that hold any charge at or above the full well, found row by row as the memory lies.
+std::vector<int> full_columns(const ImageView<double, unit::SampledElectrons>& electrons, double full_well) {
   const Rectangle& area = electrons.area();
-  std::vector<char> overfull(static_cast<std::size_t>(area.nx), 0);
+  std::vector<char> full;
   for (int y = area.y0; y < area.y1(); ++y) {
     const std::span<double> row = electrons.row(y);
-    for (std::size_t i = 0; i < row.size(); ++i) overfull[i] |= static_cast<char>(row[i] > full_well);
+    if (!any_at_least(row, full_well)) continue;
+    full.resize(row.size(), 0);
+    for (std::size_t i = 0; i < row.size(); ++i) full[i] |= static_cast<char>(row[i] >= full_well);
   }
   std::vector<int> columns;
-  for (std::size_t i = 0; i < overfull.size(); ++i)
-    if (overfull[i] != 0) columns.push_back(area.x0 + static_cast<int>(i));
+  for (std::size_t i = 0; i < full.size(); ++i)
+    if (full[i] != 0) columns.push_back(area.x0 + static_cast<int>(i));
   return columns;
 }
 
@@ -42,43 +41,52 @@ std::vector<int> overfull_columns(const ImageView<double, unit::SampledElectrons
 double bloom(const ImageView<double, unit::SampledElectrons>& electrons, double full_well,
              const ImageView<std::uint8_t, unit::Flags>* flags) {
   const Rectangle& area = electrons.area();
+  const auto height = static_cast<std::size_t>(area.ny);
   double lost = 0.0;
-  std::vector<double> half_excess(static_cast<std::size_t>(area.ny));
-  for (const int x : overfull_columns(electrons, full_well)) {
-    const auto touch = [&](int y, bool touched) {
-      if (touched && flags != nullptr) flags->at(x, y) |= pixel_flag::kFullWell;
-    };
-    for (int y = area.y0; y < area.y1(); ++y) {
-      double& pixel = electrons.at(x, y);
+  // A column is worked on in a copy: in the image its pixels lie far apart.
+  std::vector<double> column(height);
+  std::vector<double> half_excess(height);
+  std::vector<char> touched(height);
+  for (const int x : full_columns(electrons, full_well)) {
+    for (std::size_t i = 0; i < height; ++i) {
+      const double pixel = electrons.at(x, area.y0 + static_cast<int>(i));
       const double excess = std::max(0.0, pixel - full_well);
-      half_excess[static_cast<std::size_t>(y - area.y0)] = 0.5 * excess;
-      if (excess > 0.0) pixel = full_well;
-      touch(y, excess > 0.0);
+      touched[i] = static_cast<char>(pixel >= full_well);
+      half_excess[i] = 0.5 * excess;
+      column[i] = excess > 0.0 ? full_well : pixel;
     }
     double up = 0.0;
-    for (int y = area.y0; y < area.y1(); ++y) {
-      touch(y, up > 0.0);
-      up = pour(electrons.at(x, y), full_well, up);
-      up += half_excess[static_cast<std::size_t>(y - area.y0)];
+    for (std::size_t i = 0; i < height; ++i) {
+      touched[i] |= static_cast<char>(up > 0.0);
+      up = pour(column[i], full_well, up) + half_excess[i];
     }
     double down = 0.0;
-    for (int y = area.y1() - 1; y >= area.y0; --y) {
-      touch(y, down > 0.0);
-      down = pour(electrons.at(x, y), full_well, down);
-      down += half_excess[static_cast<std::size_t>(y - area.y0)];
+    for (std::size_t i = height; i-- > 0;) {
+      touched[i] |= static_cast<char>(down > 0.0);
+      down = pour(column[i], full_well, down) + half_excess[i];
     }
     lost += up + down;
+    for (std::size_t i = 0; i < height; ++i) {
+      if (touched[i] == 0) continue;
+      const int y = area.y0 + static_cast<int>(i);
+      electrons.at(x, y) = column[i];
+      if (flags != nullptr) flags->at(x, y) |= pixel_flag::kFullWell;
+    }
   }
   return lost;
 }
 
-double clip_full_well(const ImageView<double, unit::SampledElectrons>& electrons, double full_well) {
+double clip_full_well(const ImageView<double, unit::SampledElectrons>& electrons, double full_well,
+                      const ImageView<std::uint8_t, unit::Flags>* flags) {
   double removed = 0.0;
   for (int y = electrons.area().y0; y < electrons.area().y1(); ++y) {
-    for (double& pixel : electrons.row(y)) {
-      if (pixel <= full_well) continue;
-      removed += pixel - full_well;
-      pixel = full_well;
+    const std::span<double> row = electrons.row(y);
+    if (!any_at_least(row, full_well)) continue;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      if (row[i] < full_well) continue;
+      removed += row[i] - full_well;
+      row[i] = full_well;
+      if (flags != nullptr) flags->row(y)[i] |= pixel_flag::kFullWell;
     }
   }
   return removed;

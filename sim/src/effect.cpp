@@ -24,6 +24,6 @@ std::string_view to_string(EffectLevel level) {
   return "?";
 }
 
-void Effect::prepare(CameraState& /*camera*/, const Scene& /*scene*/, const RandomStream& /*stream*/) const {}
+void Effect::prepare(CameraState& /*camera*/, const PrepareContext& /*context*/) const {}
 
 }  // namespace astroid

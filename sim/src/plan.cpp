@@ -77,36 +77,36 @@ void plan_jitter(const Scene& scene, double share, bool moves, Plan& plan) {
   }
 }
 
-/// Stars that can reach each region, found through a grid of cells so that many windows do not cost stars x windows.
-std::vector<std::vector<std::uint32_t>> stars_by_region(const Scene& scene, const PlanKnobs& knobs) {
-  constexpr int kCell = 64;  // px
-  const auto cell = [](double v) { return static_cast<int>(std::floor(v / kCell)); };
-  std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
-  double widest = 0.0;
-  for (std::size_t i = 0; i < scene.stars().size(); ++i) {
-    const SceneStar& star = scene.stars()[i];
-    cells[{cell(star.position.x), cell(star.position.y)}].push_back(static_cast<std::uint32_t>(i));
-    widest = std::max(widest, knobs.stamp_half_width(star.electrons));
+/// Replaces the rendering of every star by a polynomial in the attitude where that is cheaper. Like every decision,
+/// this one looks at the whole detector, so windows and the full frame share it.
+void plan_polynomial(const Scene& scene, double share, Plan& plan) {
+  constexpr double kReach = 4.5;  // rms of the motion in one cell: others are seldom needed
+  constexpr std::size_t kMostTerms = 24;
+  constexpr double kMostBytes = 512.0 * 1024.0 * 1024.0;  // of a detector's maps
+  const SceneSummary& s = scene.summary();
+  const double flux = s.brightest_target_electrons;
+  if (plan.knobs.jitter == JitterTreatment::kNone || !(flux > 0.0)) return;
+  const AttitudeVariance variance = scene.attitude().variance();
+  AttitudePolynomial polynomial;
+  polynomial.scale = {kReach * det::sqrt(variance.yaw), kReach * det::sqrt(variance.pitch),
+                      kReach * det::sqrt(variance.roll)};
+  AttitudeReach reach;
+  for (const SceneStar& star : scene.stars()) {
+    const AttitudeJacobian& j = star.motion;
+    reach.yaw = std::max(reach.yaw, polynomial.scale.yaw * det::hypot(j.dx_dyaw, j.dy_dyaw));
+    reach.pitch = std::max(reach.pitch, polynomial.scale.pitch * det::hypot(j.dx_dpitch, j.dy_dpitch));
+    reach.roll = std::max(reach.roll, polynomial.scale.roll * det::hypot(j.dx_droll, j.dy_droll));
   }
-  constexpr double kExcursion = 8.0;  // rms; and one pixel for the stamp's own rounding
-  const double margin = kExcursion * scene.summary().attitude_rms_px + 1.0;
-  std::vector<std::vector<std::uint32_t>> result;
-  for (const Rectangle& region : scene.layout()->regions()) {
-    std::vector<std::uint32_t>& list = result.emplace_back();
-    const double reach = widest + margin + 1.0;
-    for (int cy = cell(region.y0 - reach); cy <= cell(region.y1() + reach); ++cy)
-      for (int cx = cell(region.x0 - reach); cx <= cell(region.x1() + reach); ++cx) {
-        const auto found = cells.find({cx, cy});
-        if (found == cells.end()) continue;
-        for (const std::uint32_t i : found->second) {
-          const SceneStar& star = scene.stars()[i];
-          const Rectangle box = stamp_box(star.position, knobs.stamp_half_width(star.electrons) + margin);
-          if (star.electrons > 0.0 && !intersect(box, region).empty()) list.push_back(i);
-        }
-      }
-    std::ranges::sort(list);
-  }
-  return result;
+  double left_out = 0.0;
+  const double allowed = share * s.flux_tolerance(flux) / flux;
+  polynomial.terms = choose_attitude_terms(s.psf.derivatives, reach, allowed, kMostTerms, left_out);
+  const auto pixels = static_cast<double>(scene.detector().size());
+  if (polynomial.terms.empty() || maps_bytes(polynomial.terms.size(), pixels) > kMostBytes ||
+      maps_seconds(polynomial.terms.size(), pixels) > full_frame_seconds(plan, scene))
+    return;
+  plan.knobs.jitter = JitterTreatment::kPolynomial;
+  plan.knobs.polynomial = std::move(polynomial);
+  plan.jitter_error = flux * left_out;
 }
 
 std::string describe_pixels(const Scene& scene, const Plan& plan, std::vector<std::string>& approximations) {
@@ -141,6 +141,8 @@ std::string_view to_string(JitterTreatment treatment) {
       return "shift and broadening";
     case JitterTreatment::kSubSteps:
       return "sub-steps";
+    case JitterTreatment::kPolynomial:
+      return "polynomial in the attitude";
   }
   return "?";
 }
@@ -172,7 +174,7 @@ Plan make_plan(const Scene& scene) {
   plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   plan_jitter(scene, kShares.jitter, moves, plan);
-  plan.knobs.stars_of_region = stars_by_region(scene, plan.knobs);
+  plan_polynomial(scene, kShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan, plan.approximations);
   plan.seconds_per_exposure = predicted_seconds(plan, scene);
   plan.memory_bytes = predicted_memory(plan, scene);

@@ -1,6 +1,8 @@
 // What a plan costs, predicted before it runs.
 #pragma once
 
+#include <cstddef>
+
 #include "astroid/sim/plan.hpp"
 
 namespace astroid {
@@ -10,6 +12,12 @@ double predicted_seconds(const Plan& plan, const Scene& scene);
 
 /// Predicted time of one effect in one exposure, s; 0 when it is off or cached.
 double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Scene& scene);
+
+/// Time of rendering every star of the scene, and of summing the maps of a polynomial instead, over so many pixels.
+double full_frame_seconds(const Plan& plan, const Scene& scene);
+double maps_seconds(std::size_t terms, double pixels);
+/// Memory of those maps.
+double maps_bytes(std::size_t terms, double pixels);
 
 /// Predicted memory of one worker's state, bytes.
 double predicted_memory(const Plan& plan, const Scene& scene);

@@ -8,10 +8,10 @@
 #include <map>
 #include <utility>
 
+#include "astroid/core/digitise.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
-#include "astroid/sim/digitise.hpp"
 #include "effects/jitter_model.hpp"
 #include "psf_sensitivity.hpp"
 

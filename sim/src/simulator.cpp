@@ -2,92 +2,38 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <utility>
 
-#include "astroid/sim/digitise.hpp"
+#include "astroid/core/digitise.hpp"
 
 namespace astroid {
 
 namespace {
 
-bool is_pointing(const Effect& effect) {
-  return effect.spec().level == EffectLevel::kPointing;
+/// Pixels of a strip: its planes of doubles, 64 KiB each, stay in a second-level cache together.
+constexpr std::size_t kStripPixels = 8192;
+
+bool is_pointing(const EffectSpec& spec) {
+  return spec.level == EffectLevel::kPointing;
 }
-bool is_expectation(const Effect& effect) {
-  return effect.spec().level <= EffectLevel::kPixelMean;
+bool is_expectation(const EffectSpec& spec) {
+  return spec.level <= EffectLevel::kPixelMean;
+}
+bool draws_electrons(const EffectSpec& spec) {
+  return (spec.reads & plane_bit::kExpected) != 0 && (spec.writes & plane_bit::kSampled) != 0;
 }
 
 /// Attitude is the spacecraft's: its streams leave out the camera, so cameras share it.
-std::uint32_t stream_camera(const Effect& effect, int camera) {
-  return is_pointing(effect) ? 0U : static_cast<std::uint32_t>(camera) + 1U;
+std::uint32_t stream_camera(const EffectSpec& spec, int camera) {
+  return is_pointing(spec) ? 0U : static_cast<std::uint32_t>(camera) + 1U;
 }
 
-}  // namespace
-
-std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, const Plan& plan) {
-  auto series = std::make_shared<AttitudeSeries>();
-  if (plan.knobs.jitter == JitterTreatment::kNone) return series;
-  series->steps = plan.knobs.attitude_steps;
-  const bool keep_steps = plan.knobs.jitter == JitterTreatment::kSubSteps;
-  scene.attitude().for_each_exposure(
-      scene.mission().simulation.exposures, series->steps, [&](std::span<const Attitude> exposure) {
-        series->moments.push_back(attitude_moments(exposure));
-        if (keep_steps) series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
-      });
-  return series;
-}
-
-Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const Plan> plan, int camera,
-                     std::shared_ptr<const AttitudeSeries> attitude)
-    : scene_(std::move(scene)), plan_(std::move(plan)), attitude_(std::move(attitude)) {
-  if (attitude_ == nullptr) attitude_ = make_attitude_series(*scene_, *plan_);
-  camera_.camera = camera;
-  for (const PlannedEffect& planned : plan_->effects) {
-    streams_.push_back(make_stream(scene_->mission().simulation.seed, planned.effect->spec().id,
-                                   stream_camera(*planned.effect, camera), 0));
-    if (planned.need.needed) planned.effect->prepare(camera_, *scene_, streams_.back());
-  }
-  if (plan_->still) {
-    ExposureState state = make_state();
-    expect(0, state);
-    camera_.still = std::move(state.expected);
-  }
-}
-
-ExposureState Simulator::make_state() const {
-  ExposureState state;
-  const std::shared_ptr<const PixelLayout>& layout = scene_->layout();
-  state.expected = Plane<double, unit::ExpectedElectrons>(layout);
-  state.sampled = Plane<double, unit::SampledElectrons>(layout);
-  state.analog = Plane<double, unit::Adu>(layout);
-  state.frame.pixels = Plane<float, unit::Adu>(layout);
-  state.frame.flags = Plane<std::uint8_t, unit::Flags>(layout);
-  state.effect_seconds.assign(plan_->effects.size(), 0.0);
-  return state;
-}
-
-void Simulator::simulate(std::int64_t exposure, ExposureState& state, const StepObserver& observer) const {
-  run(exposure, state, false, observer);
-}
-
-void Simulator::expect(std::int64_t exposure, ExposureState& state) const {
-  run(exposure, state, true, {});
-}
-
-void Simulator::run(std::int64_t exposure, ExposureState& state, bool until_expected,
-                    const StepObserver& observer) const {
-  const Mission& mission = scene_->mission();
-  state.camera = camera_.camera;
-  state.exposure = exposure;
-  state.attitude = {};
-  state.attitude_steps = {};
-  state.lost_electrons = 0.0;
-  state.clipped_pixels = 0;
-  std::ranges::fill(state.frame.flags.pixels(), std::uint8_t{0});
-  FrameHeader& header = state.frame.header;
-  header.camera = camera_.camera;
+void fill_header(const Scene& scene, int camera, std::int64_t exposure, FrameHeader& header) {
+  const Mission& mission = scene.mission();
+  header.camera = camera;
   header.exposure = exposure;
-  header.mid_time = scene_->mid_time(exposure);
+  header.mid_time = scene.mid_time(exposure);
   constexpr double kSecondsPerDay = 86400.0;
   header.mid_mjd = mission.simulation.start_mjd + header.mid_time.value() / kSecondsPerDay;
   header.exposure_time = mission.simulation.exposure_time;
@@ -96,31 +42,187 @@ void Simulator::run(std::int64_t exposure, ExposureState& state, bool until_expe
   header.bias = mission.ccd.bias;
   header.saturation =
       std::min(mission.ccd.full_well / mission.ccd.gain + mission.ccd.bias, Adu(adc_top(mission.ccd.adc_bits)));
+}
 
-  // An observer wants to see every step, so nothing is taken from the cache.
-  const bool use_still = !camera_.still.empty() && !observer;
-  if (use_still) {
-    std::ranges::copy(camera_.still.pixels(), state.expected.pixels().begin());
-  } else {
-    std::ranges::fill(state.expected.pixels(), 0.0);
+}  // namespace
+
+std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, const Plan& plan) {
+  auto series = std::make_shared<AttitudeSeries>();
+  const JitterTreatment treatment = plan.knobs.jitter;
+  if (treatment == JitterTreatment::kNone) return series;
+  series->steps = plan.knobs.attitude_steps;
+  const bool keep_steps = treatment == JitterTreatment::kSubSteps || treatment == JitterTreatment::kPolynomial;
+  scene.attitude().for_each_exposure(
+      scene.mission().simulation.exposures, series->steps, [&](std::span<const Attitude> exposure) {
+        series->moments.push_back(attitude_moments(exposure));
+        for (const Attitude& a : exposure)
+          series->farthest = {std::max(series->farthest.yaw, std::fabs(a.yaw)),
+                              std::max(series->farthest.pitch, std::fabs(a.pitch)),
+                              std::max(series->farthest.roll, std::fabs(a.roll))};
+        if (keep_steps) series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
+      });
+  return series;
+}
+
+Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const Plan> plan, int camera,
+                     std::shared_ptr<const AttitudeSeries> attitude)
+    : scene_(std::move(scene)),
+      plan_(std::move(plan)),
+      attitude_(std::move(attitude)),
+      whole_(whole_strip(*scene_->layout())) {
+  camera_.strips = make_strips(*scene_->layout(), kStripPixels);
+  for (const Strip& strip : camera_.strips) longest_strip_ = std::max(longest_strip_, strip.size());
+  if (attitude_ == nullptr) attitude_ = make_attitude_series(*scene_, *plan_);
+  camera_.camera = camera;
+  for (const PlannedEffect& planned : plan_->effects) {
+    const EffectSpec& spec = planned.effect->spec();
+    streams_.push_back(make_stream(scene_->mission().simulation.seed, spec.id, stream_camera(spec, camera), 0));
+    if (planned.need.needed)
+      planned.effect->prepare(
+          camera_, {.scene = *scene_, .knobs = plan_->knobs, .stream = streams_.back(), .attitude = *attitude_});
   }
+  if (plan_->still) still_ = render({});
+  if (plan_->knobs.jitter == JitterTreatment::kPolynomial)
+    moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial);
+  stages_ = make_stages(source(), false);
+}
+
+Simulator::Source Simulator::source() const {
+  return !still_.empty() || moving_ != nullptr ? Source::kRecall : Source::kRender;
+}
+
+std::vector<Simulator::Stage> Simulator::make_stages(Source source, bool until_expected) const {
+  std::vector<Stage> stages;
+  const auto add = [&stages](bool local, Step step) {
+    if (stages.empty() || stages.back().local != local) stages.push_back({.local = local, .steps = {}});
+    stages.back().steps.push_back(step);
+  };
+  bool begun = false;
   for (std::size_t i = 0; i < plan_->effects.size(); ++i) {
-    const Effect& effect = *plan_->effects[i].effect;
-    if (!plan_->effects[i].need.needed) {
-      // Without shot noise a pixel holds what is expected of it.
-      const bool draws_electrons =
-          (effect.spec().reads & plane_bit::kExpected) != 0 && (effect.spec().writes & plane_bit::kSampled) != 0;
-      if (draws_electrons && !until_expected)
-        std::ranges::copy(state.expected.pixels(), state.sampled.pixels().begin());
-      continue;
+    const EffectSpec& spec = plan_->effects[i].effect->spec();
+    const bool needed = plan_->effects[i].need.needed;
+    if (is_pointing(spec)) continue;  // begin()
+    if (is_expectation(spec)) {
+      if (!begun) add(true, {source == Source::kRecall ? Act::kRecall : Act::kClear, i});
+      begun = true;
+      if (source == Source::kRender && needed) add(is_local(spec), {Act::kApply, i});
+    } else if (!until_expected && needed) {
+      add(is_local(spec), {Act::kApply, i});
+    } else if (!until_expected && draws_electrons(spec)) {
+      add(true, {Act::kTakeExpected, i});
     }
-    if (is_expectation(effect) ? use_still : until_expected) continue;
-    const auto start = std::chrono::steady_clock::now();
-    effect.apply(
-        state,
-        {.scene = *scene_, .knobs = plan_->knobs, .camera = camera_, .stream = streams_[i], .attitude = *attitude_});
-    state.effect_seconds[i] += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    if (observer) observer(effect.spec(), state);
+  }
+  return stages;
+}
+
+ExposureState Simulator::make_state() const {
+  ExposureState state;
+  const std::shared_ptr<const PixelLayout>& layout = scene_->layout();
+  state.expected = {layout, longest_strip_};
+  state.sampled = {layout, longest_strip_};
+  state.analog = {layout, longest_strip_};
+  state.frame.pixels = Plane<float, unit::Adu>(layout);
+  state.frame.flags = Plane<std::uint8_t, unit::Flags>(layout);
+  state.effect_seconds.assign(plan_->effects.size(), 0.0);
+  // An effect that needs more than a strip finds whole planes.
+  std::uint32_t whole = 0;
+  for (const Stage& stage : stages_)
+    for (const Step& step : stage.steps)
+      if (!stage.local)
+        whole |= plan_->effects[step.effect].effect->spec().reads | plan_->effects[step.effect].effect->spec().writes;
+  if ((whole & plane_bit::kExpected) != 0) state.expected.make_whole();
+  if ((whole & plane_bit::kSampled) != 0) state.sampled.make_whole();
+  if ((whole & plane_bit::kAnalog) != 0) state.analog.make_whole();
+  return state;
+}
+
+void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
+  state.camera = camera_.camera;
+  state.exposure = exposure;
+  state.attitude = {};
+  state.attitude_steps = {};
+  state.lost_electrons = 0.0;
+  state.clipped_pixels = 0;
+  std::ranges::fill(state.frame.flags.pixels(), std::uint8_t{0});
+  fill_header(*scene_, camera_.camera, exposure, state.frame.header);
+  for (std::size_t i = 0; i < plan_->effects.size(); ++i)
+    if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
+      take({Act::kApply, i}, state, whole_);
+  if (moving_ != nullptr)
+    state.moving = moving_->exposure(state.attitude_steps, [this](const Attitude& a) { return render(a); });
+}
+
+void Simulator::simulate(std::int64_t exposure, ExposureState& state, const StepObserver& observer) const {
+  begin(exposure, state);
+  if (observer) {
+    state.expected.make_whole();
+    state.sampled.make_whole();
+    state.analog.make_whole();
+    for (const PlannedEffect& planned : plan_->effects)
+      if (planned.need.needed && is_pointing(planned.effect->spec())) observer(planned.effect->spec(), state);
+    // What is recalled has no steps to see; they are shown as rendered, and the exposure goes on from what it has.
+    if (source() == Source::kRecall) run(make_stages(Source::kRender, true), state, observer);
+  }
+  run(stages_, state, observer);
+}
+
+void Simulator::expect(std::int64_t exposure, ExposureState& state) const {
+  begin(exposure, state);
+  state.expected.make_whole();
+  run(make_stages(source(), true), state);
+}
+
+Plane<double, unit::ExpectedElectrons> Simulator::render(const Attitude& attitude) const {
+  ExposureState state;
+  state.expected = {scene_->layout(), longest_strip_};
+  state.expected.make_whole();
+  state.effect_seconds.assign(plan_->effects.size(), 0.0);
+  state.attitude.mean = attitude;
+  run(make_stages(Source::kRender, true), state);
+  return std::move(state.expected.whole());
+}
+
+void Simulator::run(const std::vector<Stage>& stages, ExposureState& state, const StepObserver& observer) const {
+  for (const Stage& stage : stages) {
+    const bool by_strips = stage.local && !observer;
+    for (const Strip& strip : by_strips ? std::span<const Strip>(camera_.strips) : std::span(&whole_, 1)) {
+      auto last = std::chrono::steady_clock::now();
+      for (const Step& step : stage.steps) {
+        take(step, state, strip);
+        const auto now = std::chrono::steady_clock::now();
+        state.effect_seconds[step.effect] += std::chrono::duration<double>(now - last).count();
+        last = now;
+        if (observer && step.act == Act::kApply) observer(plan_->effects[step.effect].effect->spec(), state);
+      }
+    }
+  }
+}
+
+void Simulator::take(const Step& step, ExposureState& state, const Strip& strip) const {
+  switch (step.act) {
+    case Act::kApply:
+      plan_->effects[step.effect].effect->apply(state,
+                                                {.scene = *scene_,
+                                                 .knobs = plan_->knobs,
+                                                 .camera = camera_,
+                                                 .stream = streams_[step.effect],
+                                                 .attitude = *attitude_},
+                                                strip);
+      return;
+    case Act::kClear:
+      std::ranges::fill(state.expected.pixels(strip), 0.0);
+      return;
+    case Act::kRecall:
+      if (moving_ != nullptr) {
+        state.moving.recall(strip, state.expected.pixels(strip));
+      } else {
+        std::ranges::copy(still_.pixels().subspan(strip.begin, strip.size()), state.expected.pixels(strip).begin());
+      }
+      return;
+    case Act::kTakeExpected:
+      // Without shot noise a pixel holds what is expected of it.
+      std::ranges::copy(state.expected.pixels(strip), state.sampled.pixels(strip).begin());
+      return;
   }
 }
 

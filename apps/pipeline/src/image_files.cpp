@@ -142,13 +142,13 @@ void write_step(FitsWriter& fits, const EffectSpec& effect, const ExposureState&
     write_plane(fits, state.frame.pixels, FitsNumber::kFloat32, scene, cards, history, [](float v) { return v; });
   } else if ((effect.writes & plane_bit::kAnalog) != 0) {
     cards.emplace_back("BUNIT", "adu", "before digitising");
-    write_plane(fits, state.analog, FitsNumber::kFloat64, scene, cards, history, as_double);
+    write_plane(fits, state.analog.whole(), FitsNumber::kFloat64, scene, cards, history, as_double);
   } else if ((effect.writes & plane_bit::kSampled) != 0) {
     cards.emplace_back("BUNIT", "electron", "drawn electrons");
-    write_plane(fits, state.sampled, FitsNumber::kFloat64, scene, cards, history, as_double);
+    write_plane(fits, state.sampled.whole(), FitsNumber::kFloat64, scene, cards, history, as_double);
   } else {
     cards.emplace_back("BUNIT", "electron", "expected electrons");
-    write_plane(fits, state.expected, FitsNumber::kFloat64, scene, cards, history, as_double);
+    write_plane(fits, state.expected.whole(), FitsNumber::kFloat64, scene, cards, history, as_double);
   }
 }
 

@@ -2,7 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "astroid/sim/digitise.hpp"
+#include "astroid/core/digitise.hpp"
+#include "astroid/core/pixel_noise.hpp"
 #include "astroid/sim/scene.hpp"
 
 namespace astroid {
@@ -14,13 +15,11 @@ EffectNeed Adc::is_needed(const SceneSummary& scene) const {
           0.0, 0.0};
 }
 
-void Adc::apply(ExposureState& state, const EffectContext& context) const {
+void Adc::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const double top = adc_top(context.scene.mission().ccd.adc_bits);
-  const std::span<const double> analog = state.analog.pixels();
-  const std::span<float> digital = state.frame.pixels.pixels();
-  const std::span<std::uint8_t> flags = state.frame.flags.pixels();
-  for (std::size_t i = 0; i < analog.size(); ++i) digital[i] = digitise(analog[i], top, flags[i]);
-  for (const std::uint8_t flag : flags) state.clipped_pixels += (flag & pixel_flag::kAdcSaturated) != 0 ? 1 : 0;
+  const std::span<float> digital = state.frame.pixels.pixels().subspan(strip.begin, strip.size());
+  const std::span<std::uint8_t> flags = state.frame.flags.pixels().subspan(strip.begin, strip.size());
+  state.clipped_pixels += static_cast<std::int64_t>(digitise_pixels(state.analog.pixels(strip), top, digital, flags));
 }
 
 }  // namespace astroid

@@ -18,7 +18,7 @@ class Adc final : public Effect {
                                     ""};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  void apply(ExposureState& state, const EffectContext& context) const override;
+  void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 
 }  // namespace astroid

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "astroid/core/plane_kernels.hpp"
 #include "astroid/sim/scene.hpp"
 
 namespace astroid {
@@ -14,9 +15,8 @@ EffectNeed BiasEffect::is_needed(const SceneSummary& scene) const {
       0.0, 0.0};
 }
 
-void BiasEffect::apply(ExposureState& state, const EffectContext& context) const {
-  const double bias = context.scene.mission().ccd.bias.value();
-  for (double& counts : state.analog.pixels()) counts += bias;
+void BiasEffect::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
+  add_constant(state.analog.pixels(strip), context.scene.mission().ccd.bias.value());
 }
 
 }  // namespace astroid

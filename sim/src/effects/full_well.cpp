@@ -28,20 +28,14 @@ EffectNeed FullWell::is_needed(const SceneSummary& scene) const {
           std::max(0.0, highest - full_well), needed ? 1.0 : 0.0};
 }
 
-void FullWell::apply(ExposureState& state, const EffectContext& context) const {
+void FullWell::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const CcdSettings& ccd = context.scene.mission().ccd;
   const double full_well = ccd.full_well.value();
-  for (std::size_t r = 0; r < state.sampled.layout().regions().size(); ++r) {
-    const auto electrons = state.sampled.view(r);
+  for (std::size_t r = 0; r < strip.pieces.size(); ++r) {
+    const auto electrons = state.sampled.view(strip, strip.pieces[r]);
     const auto flags = state.frame.flags.view(r);
-    state.lost_electrons += ccd.blooming ? bloom(electrons, full_well, &flags) : clip_full_well(electrons, full_well);
-    const Rectangle& area = electrons.area();
-    for (int y = area.y0; y < area.y1(); ++y) {
-      const std::span<const double> row = electrons.row(y);
-      const std::span<std::uint8_t> flag = flags.row(y);
-      for (std::size_t i = 0; i < row.size(); ++i)
-        if (row[i] >= full_well) flag[i] |= pixel_flag::kFullWell;
-    }
+    state.lost_electrons +=
+        ccd.blooming ? bloom(electrons, full_well, &flags) : clip_full_well(electrons, full_well, &flags);
   }
 }
 

@@ -12,7 +12,7 @@ class GainEffect final : public Effect {
       "gain", StreamId{10}, EffectLevel::kReadout, plane_bit::kSampled, plane_bit::kAnalog, 0, RandomScope::kNone, ""};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  void apply(ExposureState& state, const EffectContext& context) const override;
+  void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 
 }  // namespace astroid

@@ -10,7 +10,7 @@ EffectNeed JitterFileEffect::is_needed(const SceneSummary& scene) const {
   return jitter_need(scene);
 }
 
-void JitterFileEffect::apply(ExposureState& state, const EffectContext& context) const {
+void JitterFileEffect::apply(ExposureState& state, const EffectContext& context, const Strip& /*strip*/) const {
   take_attitude(state, context.attitude);
 }
 

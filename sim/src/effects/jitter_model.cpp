@@ -10,7 +10,7 @@ EffectNeed JitterModelEffect::is_needed(const SceneSummary& scene) const {
   return jitter_need(scene);
 }
 
-void JitterModelEffect::apply(ExposureState& state, const EffectContext& context) const {
+void JitterModelEffect::apply(ExposureState& state, const EffectContext& context, const Strip& /*strip*/) const {
   take_attitude(state, context.attitude);
 }
 

@@ -13,7 +13,7 @@ class JitterModelEffect final : public Effect {
       plane_bit::kAttitude, 0,           RandomScope::kPerExposure, "UhlenbeckOrnstein1930"};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  void apply(ExposureState& state, const EffectContext& context) const override;
+  void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 
 }  // namespace astroid

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include "astroid/core/distributions.hpp"
 #include "astroid/core/math.hpp"
+#include "effects/pixel_pattern.hpp"
 
 namespace astroid {
 
@@ -16,15 +16,10 @@ EffectNeed PhotonNoise::is_needed(const SceneSummary& scene) const {
           0.0, light ? 1.0 : 0.0};
 }
 
-void PhotonNoise::apply(ExposureState& state, const EffectContext& context) const {
-  for (std::size_t r = 0; r < state.expected.layout().regions().size(); ++r) {
-    const auto expected = state.expected.view(r);
-    const auto sampled = state.sampled.view(r);
-    const Rectangle& area = expected.area();
-    for (int y = area.y0; y < area.y1(); ++y)
-      poisson_row(context.stream, {.x0 = area.x0, .y = y, .exposure = static_cast<std::uint32_t>(state.exposure)},
-                  expected.row(y), sampled.row(y));
-  }
+void PhotonNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
+  for (const StripPiece& piece : strip.pieces)
+    pixel_poisson(context.stream, noise_of(piece, state.exposure), state.expected.pixels(strip, piece),
+                  state.sampled.pixels(strip, piece));
 }
 
 }  // namespace astroid

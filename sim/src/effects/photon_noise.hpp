@@ -12,7 +12,7 @@ class PhotonNoise final : public Effect {
                                     plane_bit::kSampled, 0,           RandomScope::kPerExposure, "Giles2016"};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  void apply(ExposureState& state, const EffectContext& context) const override;
+  void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 
 }  // namespace astroid

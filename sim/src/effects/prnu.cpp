@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <vector>
 
-#include "astroid/core/distributions.hpp"
+#include "astroid/core/plane_kernels.hpp"
 #include "astroid/sim/scene.hpp"
+#include "effects/pixel_pattern.hpp"
 
 namespace astroid {
 
@@ -25,25 +25,14 @@ EffectNeed Prnu::is_needed(const SceneSummary& scene) const {
           bias, variance_ratio};
 }
 
-void Prnu::prepare(CameraState& camera, const Scene& scene, const RandomStream& stream) const {
-  const double rms = scene.mission().ccd.prnu;
-  camera.prnu = Plane<float, unit::Relative>(scene.layout());
-  std::vector<double> normals;
-  for (std::size_t r = 0; r < scene.layout()->regions().size(); ++r) {
-    const Rectangle& area = scene.layout()->regions()[r];
-    normals.resize(static_cast<std::size_t>(area.nx));
-    for (int y = area.y0; y < area.y1(); ++y) {
-      normal_row(stream, {.x0 = area.x0, .y = y}, normals);
-      const std::span<float> row = camera.prnu.view(r).row(y);
-      for (std::size_t i = 0; i < row.size(); ++i) row[i] = static_cast<float>(std::max(0.0, 1.0 + rms * normals[i]));
-    }
-  }
+void Prnu::prepare(CameraState& camera, const PrepareContext& context) const {
+  const double rms = context.scene.mission().ccd.prnu;
+  camera.prnu = Plane<float, unit::Relative>(context.scene.layout());
+  draw_fixed_pattern(context.stream, camera.prnu, [&](double normal) { return std::max(0.0, 1.0 + rms * normal); });
 }
 
-void Prnu::apply(ExposureState& state, const EffectContext& context) const {
-  const std::span<double> pixels = state.expected.pixels();
-  const std::span<const float> response = context.camera.prnu.pixels();
-  for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] *= static_cast<double>(response[i]);
+void Prnu::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
+  multiply_values(state.expected.pixels(strip), context.camera.prnu.pixels().subspan(strip.begin, strip.size()));
 }
 
 }  // namespace astroid

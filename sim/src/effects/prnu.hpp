@@ -14,8 +14,8 @@ class Prnu final : public Effect {
       0,      RandomScope::kStatic, "DeRidder2006"};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  void prepare(CameraState& camera, const Scene& scene, const RandomStream& stream) const override;
-  void apply(ExposureState& state, const EffectContext& context) const override;
+  void prepare(CameraState& camera, const PrepareContext& context) const override;
+  void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 
 }  // namespace astroid

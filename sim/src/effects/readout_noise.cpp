@@ -2,10 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <vector>
-
-#include "astroid/core/distributions.hpp"
 #include "astroid/sim/scene.hpp"
+#include "effects/pixel_pattern.hpp"
 
 namespace astroid {
 
@@ -23,21 +21,10 @@ EffectNeed ReadoutNoise::is_needed(const SceneSummary& scene) const {
           0.0, ratio};
 }
 
-void ReadoutNoise::apply(ExposureState& state, const EffectContext& context) const {
+void ReadoutNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const double rms = context.scene.mission().ccd.readout_noise.value();
-  std::vector<double>& normals = state.scratch;
-  for (std::size_t r = 0; r < state.sampled.layout().regions().size(); ++r) {
-    const auto electrons = state.sampled.view(r);
-    const Rectangle& area = electrons.area();
-    if (normals.size() < static_cast<std::size_t>(area.nx)) normals.resize(static_cast<std::size_t>(area.nx));
-    const std::span<double> noise(normals.data(), static_cast<std::size_t>(area.nx));
-    for (int y = area.y0; y < area.y1(); ++y) {
-      normal_row(context.stream, {.x0 = area.x0, .y = y, .exposure = static_cast<std::uint32_t>(state.exposure)},
-                 noise);
-      const std::span<double> row = electrons.row(y);
-      for (std::size_t i = 0; i < row.size(); ++i) row[i] += rms * noise[i];
-    }
-  }
+  for (const StripPiece& piece : strip.pieces)
+    add_pixel_normals(context.stream, noise_of(piece, state.exposure), rms, state.sampled.pixels(strip, piece));
 }
 
 }  // namespace astroid

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "astroid/core/plane_kernels.hpp"
 #include "astroid/sim/scene.hpp"
 #include "effects/need.hpp"
 
@@ -17,9 +18,8 @@ EffectNeed Sky::is_needed(const SceneSummary& scene) const {
   return background_need(scene, sky_electrons(*scene.mission).value(), "sky");
 }
 
-void Sky::apply(ExposureState& state, const EffectContext& context) const {
-  const double level = sky_electrons(context.scene.mission()).value();
-  for (double& pixel : state.expected.pixels()) pixel += level;
+void Sky::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
+  add_constant(state.expected.pixels(strip), sky_electrons(context.scene.mission()).value());
 }
 
 }  // namespace astroid

@@ -12,7 +12,7 @@ class Sky final : public Effect {
       "sky", StreamId{4}, EffectLevel::kSky, plane_bit::kExpected, plane_bit::kExpected, 0, RandomScope::kNone, ""};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  void apply(ExposureState& state, const EffectContext& context) const override;
+  void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 
 }  // namespace astroid

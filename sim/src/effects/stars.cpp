@@ -2,43 +2,21 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
+#include <span>
+#include <vector>
 
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
+#include "star_lists.hpp"
 
 namespace astroid {
 
 namespace {
 
-/// Where a star is during an exposure, or a part of it.
-struct Placement {
-  PixelPosition centre;
-  MotionCovariance motion{};  ///< about the centre
-  bool broadened = false;
-};
-
-/// Adds `electrons` of light to the pixels of `view` that lie within the star's stamp.
-void add_star(const PixelPsf& psf, const Placement& at, double electrons, double half_width,
-              const ImageView<double, unit::ExpectedElectrons>& view, ExposureState& state) {
-  const Rectangle box = intersect(stamp_box(at.centre, half_width), view.area());
-  if (box.empty()) return;
-  if (state.stamp.size() < box.size()) state.stamp.resize(box.size());
-  const std::span<double> fractions(state.stamp.data(), box.size());
-  if (at.broadened) {
-    psf.integrate_broadened(at.centre, at.motion, box, fractions, state.scratch);
-  } else {
-    psf.integrate(at.centre, box, fractions);
-  }
-  const double* fraction = fractions.data();
-  for (int y = box.y0; y < box.y1(); ++y) {
-    double* pixel = &view.at(box.x0, y);
-    for (int i = 0; i < box.nx; ++i) pixel[i] += electrons * fraction[i];
-    fraction += box.nx;
-  }
-}
-
-PixelPosition displaced(const SceneStar& star, const Attitude& attitude) {
+PixelPosition displaced(const RenderedStar& star, const Attitude& attitude) {
   const PixelShift shift = displacement(star.motion, attitude);
   return {star.position.x + shift.dx, star.position.y + shift.dy};
 }
@@ -53,27 +31,51 @@ EffectNeed Stars::is_needed(const SceneSummary& scene) const {
           scene.brightest_electrons, 1.0};
 }
 
-void Stars::apply(ExposureState& state, const EffectContext& context) const {
-  const Scene& scene = context.scene;
-  const PixelPsf& psf = scene.psf();
+void Stars::prepare(CameraState& camera, const PrepareContext& context) const {
+  // The images that a polynomial goes through lie up to a cell farther out than any exposure.
+  const Attitude& scale = context.knobs.polynomial.scale;
+  const Attitude& farthest = context.attitude.farthest;
+  const Attitude reach{farthest.yaw + 2.0 * scale.yaw, farthest.pitch + 2.0 * scale.pitch,
+                       farthest.roll + 2.0 * scale.roll};
+  std::vector<StripPiece> pieces;
+  for (const Strip& strip : camera.strips) pieces.insert(pieces.end(), strip.pieces.begin(), strip.pieces.end());
+  auto lists = star_lists(context.scene, context.knobs, pieces, reach);
+  auto list = lists.begin();
+  for (const Strip& strip : camera.strips) {
+    const auto end = list + static_cast<std::ptrdiff_t>(strip.pieces.size());
+    camera.stars.emplace_back(std::move_iterator(list), std::move_iterator(end));
+    list = end;
+  }
+}
+
+void Stars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
+  const PixelPsf& psf = context.scene.psf();
   const JitterTreatment jitter = context.knobs.jitter;
   const auto steps = static_cast<double>(state.attitude_steps.size());
-  for (std::size_t region = 0; region < state.expected.layout().regions().size(); ++region) {
-    const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(region);
-    for (const std::uint32_t index : context.knobs.stars_of_region[region]) {
-      const SceneStar& star = scene.stars()[index];
-      const double half_width = context.knobs.stamp_half_width(star.electrons);
-      if (jitter == JitterTreatment::kSubSteps) {
-        for (const Attitude& attitude : state.attitude_steps)
-          add_star(psf, {.centre = displaced(star, attitude)}, star.electrons / steps, half_width, view, state);
-        continue;
+  // One strip, as a rule; all of them where the whole frame is made at once.
+  const std::span<const Strip> strips = context.camera.strips;
+  auto part = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin);
+  for (; part != strips.end() && part->begin < strip.end; ++part) {
+    const auto& lists = context.camera.stars[static_cast<std::size_t>(part - strips.begin())];
+    for (std::size_t p = 0; p < lists.size(); ++p) {
+      const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(strip, part->pieces[p]);
+      for (const RenderedStar& star : lists[p]) {
+        StarLight light{.centre = {}, .electrons = star.electrons, .half_width = star.half_width};
+        if (jitter == JitterTreatment::kSubSteps) {
+          light.electrons /= steps;
+          for (const Attitude& attitude : state.attitude_steps) {
+            light.centre = displaced(star, attitude);
+            psf.add_star(light, view, state.scratch);
+          }
+          continue;
+        }
+        light.centre = displaced(star, state.attitude.mean);
+        if (jitter == JitterTreatment::kBroadened) {
+          light.motion = motion_covariance(star.motion, state.attitude.covariance);
+          light.broadened = true;
+        }
+        psf.add_star(light, view, state.scratch);
       }
-      Placement at{.centre = displaced(star, state.attitude.mean)};
-      if (jitter == JitterTreatment::kBroadened) {
-        at.motion = motion_covariance(star.motion, state.attitude.covariance);
-        at.broadened = true;
-      }
-      add_star(psf, at, star.electrons, half_width, view, state);
     }
   }
 }

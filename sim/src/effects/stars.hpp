@@ -15,7 +15,8 @@ class Stars final : public Effect {
       0,       RandomScope::kNone, "Marchiori2019"};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  void apply(ExposureState& state, const EffectContext& context) const override;
+  void prepare(CameraState& camera, const PrepareContext& context) const override;
+  void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 
 }  // namespace astroid

@@ -87,7 +87,7 @@ std::vector<double> expected(const Scene& scene, JitterTreatment treatment, int 
   const Simulator simulator(std::shared_ptr<const Scene>(&scene, [](const Scene*) {}), plan, 0);
   ExposureState state = simulator.make_state();
   simulator.expect(1, state);
-  return {state.expected.pixels().begin(), state.expected.pixels().end()};
+  return {state.expected.whole().pixels().begin(), state.expected.whole().pixels().end()};
 }
 
 TEST(JitterTreatment, BroadeningIsTheLimitOfSubSteps) {

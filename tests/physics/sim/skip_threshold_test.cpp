@@ -73,7 +73,7 @@ std::vector<double> fluxes(const Planned& p, const std::shared_ptr<const Plan>& 
     const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
     const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
     for (int y = y0; y < y0 + 6; ++y)
-      for (int x = x0; x < x0 + 6; ++x) sum += state.expected.view(0).at(x, y);
+      for (int x = x0; x < x0 + 6; ++x) sum += state.expected.whole().view(0).at(x, y);
     sums.push_back(sum);
   }
   return sums;

@@ -14,7 +14,7 @@ double expected_sum(const Mission& mission, const StarCatalogue& catalogue) {
   simulator.simulate(0, state);
   simulator.expect(0, state);
   double sum = 0.0;
-  for (const double pixel : state.expected.pixels()) sum += pixel;
+  for (const double pixel : state.expected.whole().pixels()) sum += pixel;
   return sum;
 }
 

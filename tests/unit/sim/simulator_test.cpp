@@ -83,9 +83,11 @@ TEST(Simulator, EffectOnOffLeavesOtherDrawsAlone) {
     ExposureState state = simulator.make_state();
     std::vector<double> before;
     simulator.simulate(1, state, [&](const EffectSpec& effect, const ExposureState& s) {
-      if (effect.name == "photon-noise") before.assign(s.sampled.pixels().begin(), s.sampled.pixels().end());
+      if (effect.name == "photon-noise")
+        before.assign(s.sampled.whole().pixels().begin(), s.sampled.whole().pixels().end());
       if (effect.name == "readout-noise")
-        for (std::size_t i = 0; i < before.size(); ++i) noise[which].push_back(s.sampled.pixels()[i] - before[i]);
+        for (std::size_t i = 0; i < before.size(); ++i)
+          noise[which].push_back(s.sampled.whole().pixels()[i] - before[i]);
     });
     ++which;
   }

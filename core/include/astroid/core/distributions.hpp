@@ -80,7 +80,7 @@ struct PixelAddress {
 
 /// Uniforms in (0, 1), 32 bits. A pixel's value does not depend on x0: any window gives the same.
 void uniform_row(const RandomStream& stream, const PixelAddress& address, std::span<double> out);
-/// Standard normals.
+/// Standard normals in double precision, one after the other: the oracle of pixel_normals() (pixel_noise.hpp).
 void normal_row(const RandomStream& stream, const PixelAddress& address, std::span<double> out);
 /// Poisson counts of the given means. Uses the words of `draw` and, where those leave the count open, `draw + 1`.
 /// @throws BugError when a mean is negative, NaN or above 1e15, when the spans differ in size or draw is 65535.

@@ -11,6 +11,15 @@
 
 namespace astroid {
 
+/// A star on its way to an image.
+struct StarLight {
+  PixelPosition centre;
+  double electrons = 0.0;
+  double half_width = 0.0;    ///< of its stamp, px (stamp_box())
+  MotionCovariance motion{};  ///< of its position about the centre, px²
+  bool broadened = false;     ///< whether the motion counts
+};
+
 /// A point-spread function integrated over pixels. Implementations are immutable and may be shared by threads.
 class PixelPsf {
  public:
@@ -43,6 +52,17 @@ class PixelPsf {
   /// @accuracy  O(motion² / sigma⁴) relative (test: Broadening.IsTheMeanOfMovedStampsToSecondOrder).  @source F26
   virtual void integrate_broadened(PixelPosition centre, const MotionCovariance& motion, Rectangle box,
                                    std::span<double> fractions, std::vector<double>& scratch) const;
+
+  /// Adds a star's light to the pixels of its stamp: electrons times the fractions of integrate(), or of
+  /// integrate_broadened().
+  ///
+  /// What a pixel gains depends on the star and the pixel only, not on the image, bit for bit. A star that is nowhere
+  /// (a position that is not finite) adds nothing.
+  /// @param image    whole rows of an image, contiguous: area().nx == stride().  @param scratch  resized as needed.
+  /// @accuracy  of integrate(), and 1e-13 of the star's light (tests: GaussianProfiles.AreTheIntegrals,
+  ///            AddStar.AddsTheFractionsOfIntegrate)  @complexity (bench: BM_AddStar)
+  virtual void add_star(const StarLight& star, const ImageView<double, unit::ExpectedElectrons>& image,
+                        std::vector<double>& scratch) const;
 
   /// Half-width in pixels of the square stamp around the star outside of which less than `lost` of its flux falls,
   /// for any sub-pixel position.  @param lost  in (0, 1)

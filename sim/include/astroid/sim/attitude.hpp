@@ -75,6 +75,7 @@ struct AttitudeSeries {
   std::vector<AttitudeMoments> moments;  ///< [exposure]; empty when nothing moves
   std::vector<Attitude> samples;         ///< [exposure][step], only where exposures are rendered step by step
   int steps = 1;
+  Attitude farthest;  ///< the largest of each axis, in absolute value
 };
 
 /// No motion at all.

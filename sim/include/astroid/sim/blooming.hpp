@@ -14,13 +14,14 @@ namespace astroid {
 /// without excess keeps its bits.
 /// @param electrons  [in,out] after photon noise, e-.
 /// @param full_well  e-, > 0. Afterwards no pixel is above it.
-/// @param flags      [in,out] gains pixel_flag::kFullWell where charge was spilt or received.
+/// @param flags      [in,out] gains pixel_flag::kFullWell where a pixel was full, spilt charge or received some.
 /// @returns  electrons lost through the edges. @complexity O(pixels) @rng none @thread safe
 /// @source Jannsen2024; differs: one conserving sweep instead of repeated passes (test: Blooming.ConservesCharge).
 double bloom(const ImageView<double, unit::SampledElectrons>& electrons, double full_well,
              const ImageView<std::uint8_t, unit::Flags>* flags = nullptr);
 
-/// Clips at the full well without spilling. @returns electrons removed.
-double clip_full_well(const ImageView<double, unit::SampledElectrons>& electrons, double full_well);
+/// Clips at the full well without spilling; flags pixels that were full. @returns electrons removed.
+double clip_full_well(const ImageView<double, unit::SampledElectrons>& electrons, double full_well,
+                      const ImageView<std::uint8_t, unit::Flags>* flags = nullptr);
 
 }  // namespace astroid

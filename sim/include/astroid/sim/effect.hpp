@@ -11,7 +11,9 @@
 #include "astroid/core/frame.hpp"
 #include "astroid/core/random.hpp"
 #include "astroid/sim/attitude.hpp"
+#include "astroid/sim/moving_image.hpp"
 #include "astroid/sim/scene_summary.hpp"
+#include "astroid/sim/strip.hpp"
 
 namespace astroid {
 
@@ -68,12 +70,21 @@ struct EffectNeed {
       0.0;  ///< of any target's flux at the longest reported time bin with all cameras, relative to its variance
 };
 
+/// What rendering a star takes.
+struct RenderedStar {
+  PixelPosition position;   ///< px, at the nominal pointing
+  double electrons = 0.0;   ///< per exposure
+  double half_width = 0.0;  ///< of its stamp, px
+  AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
+};
+
 /// What happens to one camera that does not change from exposure to exposure; built once, then only read.
 struct CameraState {
   int camera = 0;
-  Plane<float, unit::Relative> prnu;             ///< pixel response, mean 1; empty when the effect is off
-  Plane<float, unit::ExpectedElectrons> dark;    ///< dark electrons per exposure; empty when the effect is off
-  Plane<double, unit::ExpectedElectrons> still;  ///< noiseless image, when nothing in it changes; else empty
+  std::vector<Strip> strips;                                  ///< of the layout
+  std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][piece]: those that may reach it
+  Plane<float, unit::Relative> prnu;                          ///< pixel response, mean 1; empty when the effect is off
+  Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
 };
 
 /// Everything that belongs to one exposure of one camera. One worker owns it.
@@ -81,15 +92,15 @@ struct ExposureState {
   int camera = 0;
   std::int64_t exposure = 0;
   AttitudeMoments attitude;                  ///< of the exposure; zero when nothing moves
-  std::span<const Attitude> attitude_steps;  ///< of the exposure, where the plan renders step by step
-  Plane<double, unit::ExpectedElectrons> expected;
-  Plane<double, unit::SampledElectrons> sampled;
-  Plane<double, unit::Adu> analog;
+  std::span<const Attitude> attitude_steps;  ///< of the exposure, where the plan wants them
+  MovingImage::Exposure moving;              ///< its noiseless image, where that is recalled from fixed maps
+  StripPlane<double, unit::ExpectedElectrons> expected;
+  StripPlane<double, unit::SampledElectrons> sampled;
+  StripPlane<double, unit::Adu> analog;
   Frame frame;
   double lost_electrons = 0.0;         ///< charge that left through the edge of the frame or was clipped
   std::int64_t clipped_pixels = 0;     ///< by the ADC
   std::vector<double> effect_seconds;  ///< of each effect of the plan, added up over the exposures this state has seen
-  std::vector<double> stamp;           ///< of the renderer; its content means nothing between calls
   std::vector<double> scratch;         ///< of the renderer; its content means nothing between calls
 };
 
@@ -98,6 +109,19 @@ struct EffectContext {
   const Scene& scene;
   const PlanKnobs& knobs;
   const CameraState& camera;
+  RandomStream stream;  ///< of this effect and camera
+  const AttitudeSeries& attitude;
+};
+
+/// Whether a pixel's result does not depend on other pixels, so that the effect may be applied strip by strip.
+constexpr bool is_local(const EffectSpec& spec) {
+  return spec.halo_px == 0;
+}
+
+/// What an effect may look at when it draws or collects what is fixed for a camera.
+struct PrepareContext {
+  const Scene& scene;
+  const PlanKnobs& knobs;
   RandomStream stream;  ///< of this effect and camera
   const AttitudeSeries& attitude;
 };
@@ -116,9 +140,10 @@ class Effect {
   /// Decides from full-frame numbers of the scene, so windows and variants of one scene share the decision.
   [[nodiscard]] virtual EffectNeed is_needed(const SceneSummary& scene) const = 0;
   /// Draws what is fixed for a camera (scope `static`). The default has nothing to draw.
-  virtual void prepare(CameraState& camera, const Scene& scene, const RandomStream& stream) const;
-  /// Changes one exposure. @thread safe for different states.
-  virtual void apply(ExposureState& state, const EffectContext& context) const = 0;
+  virtual void prepare(CameraState& camera, const PrepareContext& context) const;
+  /// Changes the pixels of one strip of an exposure, which is all of them where the effect is not local.
+  /// @thread safe for different states.
+  virtual void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const = 0;
 };
 
 }  // namespace astroid

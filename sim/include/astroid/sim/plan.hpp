@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "astroid/sim/attitude_polynomial.hpp"
 #include "astroid/sim/effect.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -14,10 +15,11 @@ namespace astroid {
 
 /// How the motion within and between exposures enters the image.
 enum class JitterTreatment : std::uint8_t {
-  kNone,       ///< nothing moves
-  kShift,      ///< stars at their mean position of the exposure
-  kBroadened,  ///< the same, and the PSF broadened by the motion about it
-  kSubSteps,   ///< the mean of the images at every step of the exposure
+  kNone,        ///< nothing moves
+  kShift,       ///< stars at their mean position of the exposure
+  kBroadened,   ///< the same, and the PSF broadened by the motion about it
+  kSubSteps,    ///< the mean of the images at every step of the exposure
+  kPolynomial,  ///< the same mean, of an image that is a polynomial in the attitude: a sum of fixed maps
 };
 std::string_view to_string(JitterTreatment treatment);
 
@@ -32,9 +34,8 @@ struct StampTier {
 struct PlanKnobs {
   JitterTreatment jitter = JitterTreatment::kNone;
   int attitude_steps = 1;         ///< per exposure
+  AttitudePolynomial polynomial;  ///< no terms unless the treatment is kPolynomial
   std::vector<StampTier> stamps;  ///< brightest first
-  std::vector<std::vector<std::uint32_t>>
-      stars_of_region;  ///< of the layout: stars that may reach it, in catalogue order
   [[nodiscard]] double stamp_half_width(double electrons) const;
 };
 

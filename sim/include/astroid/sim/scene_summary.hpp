@@ -1,6 +1,7 @@
 // The numbers of a scene on which the plan decides.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <string>
@@ -11,9 +12,10 @@ namespace astroid {
 
 /// How strongly the flux in a mask reacts to a displacement of the star; maxima over sub-pixel phases and masks.
 struct PsfSensitivity {
-  double gradient = 0.0;       ///< |d ln F / dx|, 1/px
-  double curvature = 0.0;      ///< |d² ln F / dx²|, 1/px²
-  double peak_fraction = 0.0;  ///< largest share of the flux in one pixel
+  double gradient = 0.0;                   ///< |d ln F / dx|, 1/px
+  double curvature = 0.0;                  ///< |d² ln F / dx²|, 1/px²
+  double peak_fraction = 0.0;              ///< largest share of the flux in one pixel
+  std::array<double, 7> derivatives{1.0};  ///< |d^n F / dx^n| / F, px^-n, index n
 };
 
 /// Full-frame numbers of a scene: of the whole catalogue, never of the windows that happen to be computed.

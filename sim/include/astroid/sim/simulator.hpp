@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "astroid/sim/effect.hpp"
+#include "astroid/sim/moving_image.hpp"
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -19,6 +20,10 @@ using StepObserver = std::function<void(const EffectSpec&, const ExposureState&)
 std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, const Plan& plan);
 
 /// Simulates the exposures of one camera. Immutable after construction; workers share it, each with its own state.
+///
+/// Effects that work on each pixel alone run strip by strip, all of them on one strip before the next, so what they
+/// hand on stays in the cache. Effects that need more than a pixel see the whole frame. A noiseless image that does not
+/// change, or changes little, is computed once and recalled.
 class Simulator {
  public:
   /// Draws what is fixed for the camera and computes what does not change. @param camera  0-based
@@ -34,20 +39,53 @@ class Simulator {
   [[nodiscard]] ExposureState make_state() const;
 
   /// Makes one exposure; the result is state.frame. The same bits whatever was in the state before.
+  /// @param observer  sees every step, each on the whole frame.
   /// @thread safe for different states
   void simulate(std::int64_t exposure, ExposureState& state, const StepObserver& observer = {}) const;
 
-  /// Expected electrons of an exposure (everything up to photon noise), without drawing anything per exposure.
+  /// Expected electrons of an exposure (everything up to photon noise) in state.expected.whole(), the same as
+  /// simulate() draws from.
   void expect(std::int64_t exposure, ExposureState& state) const;
 
  private:
-  void run(std::int64_t exposure, ExposureState& state, bool until_expected, const StepObserver& observer) const;
+  /// The noiseless image.
+  enum class Source : std::uint8_t {
+    kRender,  ///< effect by effect
+    kRecall,  ///< from what was computed once
+  };
+  enum class Act : std::uint8_t {
+    kApply,         ///< an effect
+    kClear,         ///< no light yet
+    kRecall,        ///< the noiseless image
+    kTakeExpected,  ///< as drawn electrons, where photon noise is off
+  };
+  struct Step {
+    Act act;
+    std::size_t effect;  ///< of the plan, or the one that the time is put down to
+  };
+  /// Steps that run one after the other on each strip, or on the whole frame.
+  struct Stage {
+    bool local;
+    std::vector<Step> steps;
+  };
+
+  [[nodiscard]] std::vector<Stage> make_stages(Source source, bool until_expected) const;
+  [[nodiscard]] Source source() const;
+  void begin(std::int64_t exposure, ExposureState& state) const;
+  void run(const std::vector<Stage>& stages, ExposureState& state, const StepObserver& observer = {}) const;
+  void take(const Step& step, ExposureState& state, const Strip& strip) const;
+  [[nodiscard]] Plane<double, unit::ExpectedElectrons> render(const Attitude& attitude) const;
 
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const Plan> plan_;
   CameraState camera_;
   std::vector<RandomStream> streams_;  // of plan().effects
   std::shared_ptr<const AttitudeSeries> attitude_;
+  Strip whole_;
+  std::size_t longest_strip_ = 0;
+  Plane<double, unit::ExpectedElectrons> still_;  // the noiseless image, if nothing changes
+  std::shared_ptr<const MovingImage> moving_;     // if little does
+  std::vector<Stage> stages_;                     // of an exposure
 };
 
 }  // namespace astroid

@@ -22,7 +22,7 @@ inline float digitise(double counts, double top, std::uint8_t& flag) {
     flag |= pixel_flag::kBad;
     return 0.0F;
   }
-  const double rounded = std::nearbyint(counts);
+  const double rounded = std::nearbyint(counts) + 0.0;  // -0 becomes 0, which not every rounding does by itself
   if (rounded >= top || rounded < 0.0) {
     // The top count itself stands for everything above it.
     flag |= pixel_flag::kAdcSaturated;

@@ -1,4 +1,4 @@
-#include "astroid/sim/digitise.hpp"
+#include "astroid/core/digitise.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,71 @@
+#include "astroid/sim/moving_image.hpp"
+
+#include <utility>
+
+#include "astroid/core/plane_kernels.hpp"
+
+namespace astroid {
+
+namespace {
+/// A cell is some megabytes; motions that go back and forth stay within a few.
+constexpr std::size_t kMostCells = 9;
+}  // namespace
+
+MovingImage::MovingImage(AttitudePolynomial polynomial)
+    : polynomial_(std::move(polynomial)), inverse_(coefficients_from_values(polynomial_)) {}
+
+std::shared_ptr<const MovingImageCell> MovingImage::make_cell(const Attitude& centre, const RenderAt& render) const {
+  const std::vector<Attitude> points = interpolation_points(polynomial_, centre);
+  const std::size_t n = points.size();
+  // One image after the other is rendered and added to every coefficient, so few are held at a time.
+  std::vector<Plane<double, unit::ExpectedElectrons>> coefficients;
+  for (std::size_t point = 0; point < n; ++point) {
+    const Plane<double, unit::ExpectedElectrons> image = render(points[point]);
+    for (std::size_t t = 0; t < n; ++t) {
+      if (point == 0) coefficients.emplace_back(image.shared_layout());
+      const double weight = inverse_[t * n + point];
+      if (weight == 0.0) continue;
+      const std::span<double> sum = coefficients[t].pixels();
+      const std::span<const double> values = image.pixels();
+      for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * values[i];
+    }
+  }
+  auto cell = std::make_shared<MovingImageCell>();
+  cell->base = std::move(coefficients[0]);
+  for (std::size_t t = 1; t < n; ++t) {
+    Plane<float, unit::ExpectedElectrons>& map = cell->maps.emplace_back(cell->base.shared_layout());
+    const std::span<const double> values = std::as_const(coefficients[t]).pixels();
+    for (std::size_t i = 0; i < values.size(); ++i) map.pixels()[i] = static_cast<float>(values[i]);
+  }
+  return cell;
+}
+
+std::shared_ptr<const MovingImageCell> MovingImage::cell(const Attitude& centre, const RenderAt& render) const {
+  const std::array<double, 3> key{centre.yaw, centre.pitch, centre.roll};
+  const std::lock_guard lock(mutex_);  // whoever needs the same cell has to wait for it anyway
+  const auto found = cells_.find(key);
+  if (found != cells_.end()) return found->second;
+  if (cells_.size() == kMostCells) {
+    cells_.erase(age_.front());
+    age_.erase(age_.begin());
+  }
+  age_.push_back(key);
+  return cells_[key] = make_cell(centre, render);
+}
+
+MovingImage::Exposure MovingImage::exposure(std::span<const Attitude> steps, const RenderAt& render) const {
+  const Attitude centre = cell_centre(polynomial_, attitude_moments(steps).mean);
+  Exposure exposure{.cell = cell(centre, render), .weights = {}};
+  const std::vector<double> terms = mean_of_terms(polynomial_, centre, steps);
+  for (std::size_t t = 1; t < terms.size(); ++t) exposure.weights.push_back(static_cast<float>(terms[t]));
+  return exposure;
+}
+
+void MovingImage::Exposure::recall(const Strip& strip, std::span<double> expected) const {
+  std::vector<const float*> maps;
+  maps.reserve(cell->maps.size());
+  for (const auto& map : cell->maps) maps.push_back(map.pixels().data() + strip.begin);
+  combine_maps(cell->base.pixels().subspan(strip.begin, strip.size()), maps, weights, expected);
+}
+
+}  // namespace astroid

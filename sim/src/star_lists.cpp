@@ -1,0 +1,66 @@
+#include "star_lists.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <utility>
+
+#include "astroid/core/math.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr int kCell = 64;  // px
+
+int cell(double v) {
+  return static_cast<int>(std::floor(v / kCell));
+}
+
+/// How far a star gets from its nominal place, px.
+double excursion(const AttitudeJacobian& j, const Attitude& farthest) {
+  return det::hypot(j.dx_dyaw, j.dy_dyaw) * farthest.yaw + det::hypot(j.dx_dpitch, j.dy_dpitch) * farthest.pitch +
+         det::hypot(j.dx_droll, j.dy_droll) * farthest.roll;
+}
+
+}  // namespace
+
+std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const PlanKnobs& knobs,
+                                                  std::span<const StripPiece> pieces, const Attitude& farthest) {
+  constexpr double kRounding = 1.0;  // px: of the stamp's edges
+  std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
+  std::vector<double> reach(scene.stars().size());
+  double widest = 0.0;
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    const SceneStar& star = scene.stars()[i];
+    if (!(star.electrons > 0.0)) continue;
+    reach[i] = knobs.stamp_half_width(star.electrons) + excursion(star.motion, farthest) + kRounding;
+    widest = std::max(widest, reach[i]);
+    cells[{cell(star.position.x), cell(star.position.y)}].push_back(static_cast<std::uint32_t>(i));
+  }
+  std::vector<std::vector<RenderedStar>> lists;
+  lists.reserve(pieces.size());
+  std::vector<std::uint32_t> found;
+  for (const StripPiece& piece : pieces) {
+    const Rectangle& area = piece.area;
+    found.clear();
+    for (int cy = cell(area.y0 - widest); cy <= cell(area.y1() + widest); ++cy)
+      for (int cx = cell(area.x0 - widest); cx <= cell(area.x1() + widest); ++cx) {
+        const auto stars = cells.find({cx, cy});
+        if (stars == cells.end()) continue;
+        for (const std::uint32_t i : stars->second)
+          if (!intersect(stamp_box(scene.stars()[i].position, reach[i]), area).empty()) found.push_back(i);
+      }
+    std::ranges::sort(found);
+    std::vector<RenderedStar>& list = lists.emplace_back();
+    list.reserve(found.size());
+    for (const std::uint32_t i : found) {
+      const SceneStar& star = scene.stars()[i];
+      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion});
+    }
+  }
+  return lists;
+}
+
+}  // namespace astroid

@@ -1,0 +1,19 @@
+// Which stars can reach which pixels.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "astroid/sim/effect.hpp"
+#include "astroid/sim/plan.hpp"
+#include "astroid/sim/scene.hpp"
+
+namespace astroid {
+
+/// For each piece the stars whose stamps can touch it, in catalogue order.
+/// @param farthest  the largest attitude of each axis, arcsec, in absolute value.
+/// @complexity O(pieces × stars nearby), through a grid of cells.
+std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const PlanKnobs& knobs,
+                                                  std::span<const StripPiece> pieces, const Attitude& farthest);
+
+}  // namespace astroid
