@@ -39,7 +39,7 @@ void add_star(std::vector<TargetColumn>& c) {
       number("x", "px", "true column at the nominal pointing; the centre of the first pixel is 0", &TargetMetrics::x));
   c.push_back(
       number("y", "px", "true row at the nominal pointing; the centre of the first pixel is 0", &TargetMetrics::y));
-  c.push_back({"mask_pixels", "px", "pixels of the aperture with weight above 0",
+  c.push_back({"mask_pixels", "px", "pixels of the aperture with weight",
                [](const TargetMetrics& t) { return Cell(std::int64_t{t.mask_pixels}); }});
   c.push_back(number("enclosed_fraction", "", "share of the target's flux that the aperture collects, sum w p",
                      &TargetMetrics::enclosed_fraction));
