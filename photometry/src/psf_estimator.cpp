@@ -30,6 +30,7 @@ bool StarEstimatorBuilder::choose_psf_weights(const FieldStar& star, const Recta
     // The annulus is one more datum of the same background: its mean has this error in every pixel of the window.
     if (annulus_.usable) doubts_.resize(doubts_.size() + pixels, annulus_.error);
   }
+  doubt_motion();
   std::vector<double>& variance = scratch_;
   variance.resize(pixels);
   for (std::size_t i = 0; i < pixels; ++i) variance[i] = total_[i] + model_.noise.variance();
@@ -41,6 +42,24 @@ bool StarEstimatorBuilder::choose_psf_weights(const FieldStar& star, const Recta
   known_sigma_ = errors.known;
   const auto fits_float = [](double weight) { return std::isfinite(static_cast<float>(weight)); };
   return std::isfinite(errors.noise) && std::all_of(weights_.begin(), weights_.end(), fits_float);
+}
+
+void StarEstimatorBuilder::doubt_motion() {
+  const MotionCovariance& motion = model_.motion;
+  if (!(motion.sxx > 0.0 || motion.syy > 0.0)) return;
+  // Cholesky factors of the covariance: two independent motions, along (a, b) and (0, c).
+  const double a = std::sqrt(std::max(0.0, motion.sxx));
+  const double b = a > 0.0 ? motion.sxy / a : 0.0;
+  const double c = std::sqrt(std::max(0.0, motion.syy - b * b));
+  const std::size_t pixels = change_x_.target.size();
+  const std::size_t first = doubts_.size();
+  doubts_.resize(first + 2 * pixels);
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const double dx = (change_x_.target[i] + change_x_.contaminants[i]) / (2.0 * kGradientStep);
+    const double dy = (change_y_.target[i] + change_y_.contaminants[i]) / (2.0 * kGradientStep);
+    doubts_[first + i] = a * dx + b * dy;
+    doubts_[first + pixels + i] = c * dy;
+  }
 }
 
 void StarEstimatorBuilder::judge_blend(const Rectangle& window, StarEstimator& estimator) {

@@ -22,8 +22,6 @@ namespace detail {
 
 namespace {
 
-// Central difference for d ln F/dx: its own error is h²/6 F''' ~ 1e-6 of the gradient, rounding adds 1e-13.
-constexpr double kGradientStep = 1e-3;  // px
 // A local background with a larger error than this many sigma of one pixel is worse than the known one.
 constexpr double kWorstBackgroundError = 0.5;
 
@@ -94,6 +92,7 @@ StarEstimator StarEstimatorBuilder::build(std::size_t star, const Rectangle& win
   const Rectangle used = fits_psf_ ? intersect(window, layout_.regions()[estimator.region]) : window;
   if (!(used == window)) estimator.flags |= measurement_flag::kEdge;
   expected_in_window(star, used, neighbours);
+  if (fits_psf_) differentiate(star, used, neighbours);
   if (!(fits_psf_ ? choose_psf_weights(target, used, estimator) : choose_weights(target, window))) {
     estimator.flags |= measurement_flag::kNoFlux;
     return estimator;
@@ -339,23 +338,12 @@ void StarEstimatorBuilder::add_local_background(double weight_sum, StarEstimator
       (weight_sum / count) * (weight_sum / count) * (count * model_.noise.variance() + annulus_.star_light);
 }
 
-void StarEstimatorBuilder::fill_gradients(std::size_t star, std::span<const std::size_t> neighbours,
-                                          StarEstimator& estimator) {
-  const Rectangle& region = layout_.regions()[estimator.region];
-  const Rectangle box = bounding_box(region, layout_, estimator);
-  const auto width = static_cast<std::size_t>(box.nx);
-  // target_ and contaminants_ become d/dx of the light; weights_ the weights over the smaller box.
-  weights_.assign(box.size(), 0.0);
-  for (std::size_t i = 0; i < estimator.aperture_terms; ++i) {
-    const std::size_t k = estimator.terms[i].pixel - layout_.offset(estimator.region);
-    const int x = region.x0 + static_cast<int>(k % static_cast<std::size_t>(region.nx));
-    const int y = region.y0 + static_cast<int>(k / static_cast<std::size_t>(region.nx));
-    weights_[static_cast<std::size_t>(y - box.y0) * width + static_cast<std::size_t>(x - box.x0)] =
-        static_cast<double>(estimator.terms[i].weight);
-  }
+void StarEstimatorBuilder::differentiate(std::size_t star, const Rectangle& box,
+                                         std::span<const std::size_t> neighbours) {
   for (const bool along_x : {true, false}) {
-    target_.assign(box.size(), 0.0);
-    contaminants_.assign(box.size(), 0.0);
+    LightChange& change = along_x ? change_x_ : change_y_;
+    change.target.assign(box.size(), 0.0);
+    change.contaminants.assign(box.size(), 0.0);
     for (const double sign : {1.0, -1.0}) {
       const auto add_moved = [&](std::size_t index, const Rectangle& stamp, std::span<double> light) {
         FieldStar moved;
@@ -364,15 +352,38 @@ void StarEstimatorBuilder::fill_gradients(std::size_t star, std::span<const std:
         moved.electrons = sign * model_.stars[index].electrons;
         add_star(*model_.psf, moved, stamp, box, light, scratch_);
       };
-      add_moved(star, box, target_);
+      add_moved(star, box, change.target);
       for (const std::size_t neighbour : neighbours)
-        if (neighbour != star) add_moved(neighbour, stamps_[neighbour], contaminants_);
+        if (neighbour != star) add_moved(neighbour, stamps_[neighbour], change.contaminants);
     }
+  }
+}
+
+void StarEstimatorBuilder::fill_gradients(std::size_t star, std::span<const std::size_t> neighbours,
+                                          StarEstimator& estimator) {
+  // PSF weights have differentiated the light of their window before, and weights_ is over it.
+  if (!fits_psf_) {
+    const Rectangle& region = layout_.regions()[estimator.region];
+    const Rectangle box = bounding_box(region, layout_, estimator);
+    const auto width = static_cast<std::size_t>(box.nx);
+    // weights_ becomes the weights over the smaller box.
+    weights_.assign(box.size(), 0.0);
+    for (std::size_t i = 0; i < estimator.aperture_terms; ++i) {
+      const std::size_t k = estimator.terms[i].pixel - layout_.offset(estimator.region);
+      const int x = region.x0 + static_cast<int>(k % static_cast<std::size_t>(region.nx));
+      const int y = region.y0 + static_cast<int>(k / static_cast<std::size_t>(region.nx));
+      weights_[static_cast<std::size_t>(y - box.y0) * width + static_cast<std::size_t>(x - box.x0)] =
+          static_cast<double>(estimator.terms[i].weight);
+    }
+    differentiate(star, box, neighbours);
+  }
+  for (const bool along_x : {true, false}) {
+    const LightChange& light = along_x ? change_x_ : change_y_;
     double change = 0.0;
     double prnu = 0.0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-      const double all = target_[i] + contaminants_[i];
-      const double judged = weights_[i] * (fits_psf_ ? all : target_[i]);
+      const double all = light.target[i] + light.contaminants[i];
+      const double judged = weights_[i] * (fits_psf_ ? all : light.target[i]);
       change += weights_[i] * all;
       prnu += judged * judged;
     }

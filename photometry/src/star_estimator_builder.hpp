@@ -15,6 +15,9 @@ namespace astroid::detail {
 /// Fewest annulus pixels that are trusted with a local background.
 inline constexpr std::size_t kFewestBackgroundPixels = 12;
 
+/// Central difference for d ln F/dx: its own error is h²/6 F''' ~ 1e-6 of the gradient, rounding adds 1e-13.
+inline constexpr double kGradientStep = 1e-3;  // px
+
 /// The pixels that the estimator of each target may use with weight; empty for unusable positions.
 std::vector<Rectangle> aperture_windows(const GroundModel& model, const PhotometrySettings& settings);
 
@@ -24,6 +27,11 @@ struct Annulus {
   double star_light = 0.0;  ///< e-, the sum that the pixels are believed to carry
   double error = 0.0;       ///< e-, of the mean: noise and doubt
   double doubt = 0.0;       ///< e-, of the mean: that of the stars' light alone
+};
+
+/// How the light in each pixel of a window changes when all stars move by 2 kGradientStep, e-.
+struct LightChange {
+  std::vector<double> target, contaminants;
 };
 
 class StarEstimatorBuilder {
@@ -52,6 +60,9 @@ class StarEstimatorBuilder {
   void light_of_each(std::size_t star, const Rectangle& window, std::span<const std::size_t> neighbours);
   bool choose_psf_weights(const FieldStar& star, const Rectangle& window, const StarEstimator& estimator);
   void judge_blend(const Rectangle& window, StarEstimator& estimator);
+  void doubt_motion();
+  /// Fills change_x_ and change_y_.
+  void differentiate(std::size_t star, const Rectangle& box, std::span<const std::size_t> neighbours);
   void fill_gradients(std::size_t star, std::span<const std::size_t> neighbours, StarEstimator& estimator);
 
   const PixelLayout& layout_;
@@ -71,6 +82,7 @@ class StarEstimatorBuilder {
   std::vector<double> scratch_;
   std::vector<std::size_t> found_;
   Annulus annulus_;
+  LightChange change_x_, change_y_;
   std::vector<double> doubts_;  // of PSF weights: shape (doubts, pixels), e-; neighbours first
   std::size_t neighbours_ = 0;  // rows of doubts_
   double known_sigma_ = 0.0;    // e-, of the flux if neighbours and background were known

@@ -145,6 +145,9 @@ void add_recovery(std::vector<TargetColumn>& c) {
                               &MagnitudeCauses::residual));
   c.push_back(number("delta_prnu_rms", "mag", "expected rms of delta_residual by fixed unequal pixels",
                      &TargetMetrics::prnu_magnitude));
+  c.push_back(number("delta_neighbours_rms", "mag",
+                     "rms of delta_residual if neighbours are 5 % other than believed and PSF weights took them out",
+                     &TargetMetrics::neighbour_magnitude));
   c.push_back({"exposures", "", "exposures in which the star was measured",
                [](const TargetMetrics& t) { return Cell(t.exposures); }});
   c.push_back({"missing", "", "exposures in which it could not be measured",

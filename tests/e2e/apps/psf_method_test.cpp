@@ -98,6 +98,7 @@ TEST(PsfMethod, IsBudgetedWithoutASimulation) {
   EXPECT_NEAR(psf.numbers("enclosed_fraction")[0], 1.0, 1e-6);
   EXPECT_EQ(psf.numbers("spr_tot")[0], 0.0);
   EXPECT_GT(mask.numbers("spr_tot")[0], 0.01);
+  EXPECT_LT(psf.numbers("jitter_ppm")[0], 0.1 * mask.numbers("jitter_ppm")[0]) << "the weights know of the jitter";
   EXPECT_LT(nsr_of("psf", "30,0,1").numbers("nsr_exposure")[0], nsr_of("mask", "30,0,1").numbers("nsr_exposure")[0]);
 }
 

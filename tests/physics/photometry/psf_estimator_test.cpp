@@ -333,6 +333,31 @@ TEST(PsfEstimator, RespondsToMotionAsItsGradientSays) {
   }
 }
 
+TEST(PsfEstimator, GuardsABlendAgainstMotion) {
+  // The variance that counts is that of pixels and motion together; weights for stars at rest, or for a wrong
+  // covariance, have more of it.
+  const test::GroundScene scene = crowd(1.0);
+  const MotionCovariance motion{4e-4, 1e-4, 9e-4};
+  const auto variances = [&](const MotionCovariance& believed) {
+    GroundModel model = scene.model();
+    model.motion = believed;
+    std::vector<double> result;
+    for (const StarEstimator& star : build_estimators(*test::full_frame(31, 31), model, psf_settings(6))) {
+      const double flux = star.budget.target;
+      result.push_back(star.budget.variance() + star.budget.var_neighbour_doubt +
+                       flux * flux * motion.along(star.gradient_x, star.gradient_y));
+    }
+    return result;
+  };
+  const std::vector<double> guarded = variances(motion);
+  for (const MotionCovariance& wrong :
+       {MotionCovariance{}, {4e-4, 0.0, 9e-4}, {4e-4, -1e-4, 9e-4}, {9e-4, 1e-4, 4e-4}, {8e-4, 2e-4, 18e-4}}) {
+    const std::vector<double> other = variances(wrong);
+    for (std::size_t i = 0; i < guarded.size(); ++i) EXPECT_LE(guarded[i], other[i] * (1.0 + 1e-6)) << i;
+  }
+  EXPECT_LT(guarded[0], 0.5 * variances({})[0]);
+}
+
 TEST(PsfEstimator, CountsThePixelGainsUnderNeighboursToo) {
   // F28 with the light of all stars: pixel gains of 1 + e change the flux by sum w e I.
   const test::GroundScene scene = crowd(1.0);

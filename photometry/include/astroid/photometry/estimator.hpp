@@ -52,6 +52,9 @@ struct GroundModel {
   double contamination_limit = 1e-3;  ///< share of neighbours in the flux above which kContaminated is set
   /// Relative error that the believed flux of any other star may have: 0.05 mag, the quality of a good catalogue.
   double flux_doubt = 0.05;
+  /// px², of all stars together, against which PSF weights guard as against noise of one exposure; motion that averages
+  /// out more slowly than pixel noise is to be given larger by that much. 0: the weights are those of stars at rest.
+  MotionCovariance motion;
 };
 
 /// Expected electrons and variance (e-, e-²) of one estimator in one exposure, cause by cause.
@@ -65,7 +68,8 @@ struct EstimatorBudget {
   double var_quantisation = 0.0;
   double var_background_estimate = 0.0;  ///< noise of the local background, 0 if it is known
   /// Of an error of the flux that is the same in every exposure, so no part of variance(): the neighbours' light that
-  /// PSF weights take out may be wrong by GroundModel::flux_doubt. 0 for methods that leave it in the flux.
+  /// PSF weights take out may be wrong by GroundModel::flux_doubt. 0 for methods that leave it in the flux. Reported as
+  /// delta_neighbours_rms of targets.csv.
   double var_neighbour_doubt = 0.0;
   [[nodiscard]] double variance() const {
     return var_target + var_contaminants + var_background + var_readout + var_quantisation + var_background_estimate;
@@ -125,12 +129,13 @@ inline constexpr double kBlendDoubt = 0.01;
 /// The pixels are the darkest ones, as many as make the error of the mean smallest if that belief is wrong by
 /// GroundModel::flux_doubt. With fewer than 12, or an error above half a sigma of a pixel, the known background is used
 /// and kNoBackground set. With a mesh the frames come with their background subtracted (background.hpp), and the
-/// estimators have no background term. PSF weights treat the neighbours' fluxes as known to flux_doubt and the local
-/// background as known to its error; what they leave of the believed light is taken out, so that the flux is the
-/// target's alone. kBlended is set when the noise with the neighbours' doubt exceeds kBlendInflation times that with
-/// known neighbours, or the doubt kBlendDoubt of the flux. A target whose centre is not on a pixel of the layout is
-/// kOutside; one without expected light is kNoFlux; both have no terms. Among several regions the one with most of the
-/// aperture is read.
+/// estimators have no background term. A target whose centre is not on a pixel of the layout is kOutside; one without
+/// expected light is kNoFlux; both have no terms. Among several regions the one with most of the aperture is read.
+///
+/// PSF weights treat the neighbours' fluxes as known to flux_doubt, the local background to its error and the positions
+/// to GroundModel::motion; what they leave of the believed light is taken out, so that the flux is the target's alone.
+/// kBlended is set when the noise with the neighbours' doubt exceeds kBlendInflation times that with known neighbours,
+/// or the doubt kBlendDoubt of the flux.
 ///
 /// @param layout  pixels that the frames will have.
 /// @throws InputError when the settings contradict themselves or the layout.
