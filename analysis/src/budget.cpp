@@ -40,6 +40,8 @@ StarEstimator estimator_of_first(const Mission& mission, const PixelPsf& psf, st
   model.gain = mission.ccd.gain;
   model.bias = mission.ccd.bias;
   model.contamination_limit = mission.analysis.uncontaminated_spr;
+  const RunSetup setup = run_setup(mission);
+  model.motion = motion_like_pixel_noise(star_motion(mission, 0.0, 0.0).bin, setup.exposures_per_bin, setup.cameras);
   return build_estimators(layout, model, photometry).front();
 }
 

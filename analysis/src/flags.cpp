@@ -15,6 +15,7 @@ const std::vector<FlagName>& flag_names() {
       {measurement_flag::kNoFlux, "no_flux", "no pixel with light of the target: no flux"},
       {measurement_flag::kSpoiltBackground, "spoilt_background",
        "background pixels are saturated or bloomed on: the level is of the others"},
+      {measurement_flag::kBlended, "blended", "PSF weights can't tell the star from its neighbours well"},
   };
   return names;
 }

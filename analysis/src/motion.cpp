@@ -28,4 +28,9 @@ StarMotion star_motion(const Mission& mission, double offset_x, double offset_y)
           {total.sxx * bin, total.sxy * bin, total.syy * bin}};
 }
 
+MotionCovariance motion_like_pixel_noise(const MotionCovariance& bin, double exposures_per_bin, int cameras) {
+  const double averaged = exposures_per_bin * cameras;
+  return {bin.sxx * averaged, bin.sxy * averaged, bin.syy * averaged};
+}
+
 }  // namespace astroid

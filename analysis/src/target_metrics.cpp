@@ -105,6 +105,7 @@ TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estima
   target.flux_expected = estimator.budget.target + estimator.budget.contaminants;
   target.prnu_magnitude = kPogson * setup.prnu * estimator.prnu_static * (1.0 - estimator.spr_total) /
                           std::sqrt(static_cast<double>(setup.simulated_cameras));
+  target.neighbour_magnitude = kPogson * std::sqrt(estimator.budget.var_neighbour_doubt) / estimator.budget.target;
   target.causes.contamination = kMagnitudeFactor * std::log10(1.0 - estimator.spr_total);
   target.causes.aperture_loss = -kMagnitudeFactor * std::log10(estimator.enclosed_fraction);
   return target;

@@ -98,10 +98,11 @@ int run_command_line(int argc, char** argv) {
                   "positions: a catalogue with ra,dec (the image needs a WCS) or x,y")
       ->required()
       ->type_name("FILE");
-  sub->add_option("--method", photometry_options.method, "aperture, mask (optimal binary) or weighted")
-      ->check(CLI::IsMember({"aperture", "mask", "weighted"}))
+  sub->add_option("--method", photometry_options.method,
+                  "aperture, mask (optimal binary), weighted, or psf (neighbours fitted too)")
+      ->check(CLI::IsMember({"aperture", "mask", "weighted", "psf"}))
       ->capture_default_str();
-  sub->add_option("--psf", photometry_options.psf, "a FITS file, or gaussian:SIGMA_PX; masks need it")
+  sub->add_option("--psf", photometry_options.psf, "a FITS file, or gaussian:SIGMA_PX; all but apertures need it")
       ->type_name("PSF");
   sub->add_option("--radius", photometry_options.radius, "aperture radius")->type_name("PX");
   sub->add_option("--background", photometry_options.background, "local, mesh, or a known level in the image's unit")

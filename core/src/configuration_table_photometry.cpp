@@ -7,13 +7,14 @@ std::vector<Parameter> photometry_parameters() {
       {.path = "Photometry/Method",
        .kind = Kind::kChoice,
        .fallback = "mask",
-       .choices = {"aperture", "mask", "weighted"},
-       .meaning = "How a flux is extracted: circular aperture, optimal binary mask, or weighted mask.",
+       .choices = {"aperture", "mask", "weighted", "psf"},
+       .meaning = "How a flux is extracted: circular aperture, optimal binary mask, weighted mask, or PSF weights that "
+                  "fit the neighbours too.",
        .example = "mask",
        .assign =
            [](Mission& m, const Value& v) {
              constexpr PhotometryMethod kMethods[] = {PhotometryMethod::kAperture, PhotometryMethod::kMask,
-                                                      PhotometryMethod::kWeighted};
+                                                      PhotometryMethod::kWeighted, PhotometryMethod::kPsf};
              m.photometry.method = kMethods[v.choice];
            }},
       {.path = "Photometry/ApertureRadius",
@@ -28,15 +29,16 @@ std::vector<Parameter> photometry_parameters() {
        .unit = "px",
        .range = from_to(1, 1000),
        .fallback = "6",
-       .meaning = "Side of the square window in which a mask may choose pixels.",
+       .meaning = "Side of the square window in which a mask may choose pixels and PSF weights are.",
        .example = "6",
        .assign = [](Mission& m, const Value& v) { m.photometry.mask_window = static_cast<int>(v.integer); }},
       {.path = "Photometry/MaskReach",
        .unit = "px",
        .range = from_to(0, 10000),
        .fallback = "0",
-       .meaning = "Neighbours farther from the target than this are ignored when its mask is made; 0: as far as the "
-                  "accuracy needs.",
+       .meaning =
+           "Neighbours farther from the target than this are ignored when its weights are made; 0: as far as the "
+           "accuracy needs.",
        .example = "12",
        .assign = [](Mission& m, const Value& v) { m.photometry.mask_reach = Pixels(v.real); }},
       {.path = "Photometry/Background",

@@ -18,11 +18,15 @@ namespace astroid {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+// What the aperture that gives a neighbour its first flux took in a crowd may all be of others.
+constexpr double kGuessDoubt = 1.0;
 
 // Weights of the pixels of a box, row by row.
 struct Weights {
   Rectangle box;
   std::vector<double> weight;
+  double neighbours = 0.0;           // e-, of their believed light under the weights, to be taken out
+  double neighbours_variance = 0.0;  // e-², of the doubt about it
 };
 
 // Sums over the pixels of the frame that have weight.
@@ -49,7 +53,7 @@ void check_settings(const ImagePhotometrySettings& settings) {
   if (!(radius > 0.0 && std::isfinite(radius)))
     complain("aperture radius", fmt::format("{}", radius), "more than 0 px", "an aperture needs an area");
   if (settings.method != PhotometryMethod::kAperture && settings.psf == nullptr)
-    complain("psf", "", "a PSF, given or measured", "a mask follows from the PSF");
+    complain("psf", "", "a PSF, given or measured", "masks and PSF weights follow from the PSF");
   if (settings.method != PhotometryMethod::kAperture && settings.mask_window <= 0)
     complain("mask window", fmt::format("{}", settings.mask_window), "at least 1 px", "no pixel can be in the mask");
   if (settings.background == BackgroundMethod::kLocal && !(inner >= 0.0 && outer > inner && std::isfinite(outer)))
@@ -81,14 +85,18 @@ bool on_frame(PixelPosition p, const Rectangle& area) {
 }
 
 Weights aperture_weights(PixelPosition centre, double radius) {
-  Weights weights{aperture_box(centre, radius), {}};
+  Weights weights{.box = aperture_box(centre, radius), .weight = {}};
   weights.weight.resize(weights.box.size());
   aperture_overlap(centre, radius, weights.box, weights.weight);
   return weights;
 }
 
 Weights mask_weights(const StarEstimator& estimator, const Rectangle& area) {
-  Weights weights{estimator.window, std::vector<double>(estimator.window.size(), 0.0)};
+  // Without a background of its own an estimator's offset is what PSF weights leave of the neighbours.
+  Weights weights{.box = estimator.window,
+                  .weight = std::vector<double>(estimator.window.size(), 0.0),
+                  .neighbours = estimator.offset,
+                  .neighbours_variance = estimator.budget.var_neighbour_doubt};
   const auto width = static_cast<std::size_t>(area.nx);
   for (const EstimatorTerm& term : estimator.terms) {
     const int x = area.x0 + static_cast<int>(term.pixel % width);
@@ -105,7 +113,7 @@ void for_each_pixel(const Weights& weights, const Rectangle& area, Visit visit) 
   std::size_t i = 0;
   for (int y = weights.box.y0; y < weights.box.y1(); ++y)
     for (int x = weights.box.x0; x < weights.box.x1(); ++x, ++i)
-      if (weights.weight[i] > 0.0) visit(x, y, i, area.contains(x, y));
+      if (weights.weight[i] != 0.0) visit(x, y, i, area.contains(x, y));
 }
 
 WeightedSum sum_pixels(const Frame& frame, const Weights& weights, const detail::SkyUnderStar& sky) {
@@ -135,8 +143,9 @@ WeightedSum sum_pixels(const Frame& frame, const Weights& weights, const detail:
   });
   if (!std::isfinite(flux) || total == 0.0) return sum;
   const double level_error = gain * sky.error * total;
-  sum.flux = flux;
-  sum.variance = squares * sky.variance + std::max(0.0, star_variance) + level_error * level_error;
+  sum.flux = flux - weights.neighbours;
+  sum.variance =
+      squares * sky.variance + std::max(0.0, star_variance) + level_error * level_error + weights.neighbours_variance;
   return sum;
 }
 
@@ -234,6 +243,7 @@ class ImageMeasurer {
     model.noise.background = typical_variance();
     PhotometrySettings masks;
     masks.method = settings_.method;
+    if (masks.method == PhotometryMethod::kPsf) model.flux_doubt = kGuessDoubt;
     masks.mask_window = settings_.mask_window;
     masks.background = BackgroundMethod::kMesh;
     const std::vector<StarEstimator> estimators = build_estimators(frame_.pixels.layout(), model, masks);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "astroid/photometry/aperture.hpp"
 
@@ -21,10 +22,6 @@ namespace detail {
 
 namespace {
 
-// Central difference for d ln F/dx: its own error is h²/6 F''' ~ 1e-6 of the gradient, rounding adds 1e-13.
-constexpr double kGradientStep = 1e-3;  // px
-// Relative error that the ground's belief on faint neighbours may have: 0.05 mag, the quality of a good catalogue.
-constexpr double kStarLightDoubt = 0.05;
 // A local background with a larger error than this many sigma of one pixel is worse than the known one.
 constexpr double kWorstBackgroundError = 0.5;
 
@@ -71,7 +68,8 @@ StarEstimatorBuilder::StarEstimatorBuilder(const PixelLayout& layout, const Grou
       model_(model),
       settings_(settings),
       stamps_(star_stamps(model, settings)),
-      regions_(layout.regions()) {
+      regions_(layout.regions()),
+      fits_psf_(settings.method == PhotometryMethod::kPsf) {
   if (settings.background == BackgroundMethod::kLocal) light_ = expected_light(layout, model, stamps_);
 }
 
@@ -90,20 +88,25 @@ StarEstimator StarEstimatorBuilder::build(std::size_t star, const Rectangle& win
     estimator.flags |= measurement_flag::kNoFlux;
     return estimator;
   }
-  expected_in_window(star, window, neighbours);
-  if (!choose_weights(target, window)) {
+  // PSF weights are chosen for the pixels that are there; masks give way only where they are cut.
+  const Rectangle used = fits_psf_ ? intersect(window, layout_.regions()[estimator.region]) : window;
+  if (!(used == window)) estimator.flags |= measurement_flag::kEdge;
+  expected_in_window(star, used, neighbours);
+  if (fits_psf_) differentiate(star, used, neighbours);
+  if (!(fits_psf_ ? choose_psf_weights(target, used, estimator) : choose_weights(target, window))) {
     estimator.flags |= measurement_flag::kNoFlux;
     return estimator;
   }
-  cut_at_edges(target, window, estimator);
-  fill_budget(window, estimator);
+  cut_at_edges(target, used, estimator);
+  fill_budget(used, estimator);
   if (!(estimator.budget.target > 0.0)) {
     estimator.terms.clear();
     estimator.aperture_terms = 0;
     estimator.flags |= measurement_flag::kNoFlux;
     return estimator;
   }
-  add_background(target, estimator);
+  add_background(target, used, estimator);
+  if (fits_psf_) judge_blend(used, estimator);
   estimator.nsr_exposure = std::sqrt(estimator.budget.variance()) / estimator.budget.target;
   fill_gradients(star, neighbours, estimator);
   return estimator;
@@ -140,9 +143,13 @@ void StarEstimatorBuilder::expected_in_window(std::size_t star, const Rectangle&
   total_.resize(pixels);
   // The target's own light isn't cut at its stamp: near the edge of the window every pixel still counts.
   add_star(*model_.psf, model_.stars[star], window, window, target_, scratch_);
-  for (const std::size_t neighbour : neighbours)
-    if (neighbour != star)
-      add_star(*model_.psf, model_.stars[neighbour], stamps_[neighbour], window, contaminants_, scratch_);
+  if (fits_psf_) {
+    light_of_each(star, window, neighbours);
+  } else {
+    for (const std::size_t neighbour : neighbours)
+      if (neighbour != star)
+        add_star(*model_.psf, model_.stars[neighbour], stamps_[neighbour], window, contaminants_, scratch_);
+  }
   for (std::size_t i = 0; i < pixels; ++i) total_[i] = target_[i] + contaminants_[i];
 }
 
@@ -166,6 +173,8 @@ bool StarEstimatorBuilder::choose_weights(const FieldStar& star, const Rectangle
       }
       return sum > 0.0;
     }
+    case PhotometryMethod::kPsf:
+      break;
   }
   throw BugError("unknown photometry method");
 }
@@ -201,7 +210,7 @@ void StarEstimatorBuilder::cut_at_edges(const FieldStar& star, const Rectangle& 
     // What is applied is a float: everything predicted below is of this weight.
     const auto weight = static_cast<float>(weights_[i]);
     weights_[i] = static_cast<double>(weight);
-    if (!(weight > 0.0F)) continue;
+    if (weight == 0.0F) continue;
     const int x = window.x0 + static_cast<int>(i % width);
     const int y = window.y0 + static_cast<int>(i / width);
     estimator.terms.push_back({static_cast<std::uint32_t>(layout_.index(estimator.region, x, y)), weight});
@@ -224,22 +233,25 @@ void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& e
     budget.var_target += square * target_[i];
     budget.var_contaminants += square * contaminants_[i];
     squares += square;
-    static_prnu += (w * target_[i]) * (w * target_[i]);
+    const double light = fits_psf_ ? total_[i] : target_[i];
+    static_prnu += (w * light) * (w * light);
   }
   budget.var_background = squares * noise.background;
   budget.var_readout = squares * noise.readout * noise.readout;
   budget.var_quantisation = squares * noise.quantisation * noise.quantisation;
   if (!(budget.target > 0.0)) return;
+  // PSF weights: what the neighbours are believed to leave is no part of the flux.
+  if (fits_psf_) estimator.offset = std::exchange(budget.contaminants, 0.0);
   estimator.enclosed_fraction = budget.target / electrons;
   estimator.spr_total = budget.contaminants / (budget.target + budget.contaminants);
   estimator.prnu_static = std::sqrt(static_prnu) / budget.target;
   if (estimator.spr_total > model_.contamination_limit) estimator.flags |= measurement_flag::kContaminated;
 }
 
-void StarEstimatorBuilder::add_background(const FieldStar& star, StarEstimator& estimator) {
+void StarEstimatorBuilder::add_background(const FieldStar& star, const Rectangle& window, StarEstimator& estimator) {
   double weight_sum = 0.0;
   for (const EstimatorTerm& term : estimator.terms) weight_sum += static_cast<double>(term.weight);
-  estimator.known_background = model_.noise.background * weight_sum;
+  estimator.known_background = model_.noise.background * weight_sum + estimator.offset;
   switch (settings_.background) {
     case BackgroundMethod::kMesh:
       estimator.known_background = 0.0;
@@ -248,14 +260,20 @@ void StarEstimatorBuilder::add_background(const FieldStar& star, StarEstimator& 
       estimator.offset = estimator.known_background;
       return;
     case BackgroundMethod::kLocal:
-      if (add_local_background(star, estimator)) return;
+      // PSF weights have chosen it before, since they depend on its error.
+      if (!fits_psf_) choose_annulus(star, window, estimator);
+      if (annulus_.usable) {
+        add_local_background(weight_sum, estimator);
+        return;
+      }
       estimator.offset = estimator.known_background;
       estimator.flags |= measurement_flag::kNoBackground;
       return;
   }
 }
 
-void StarEstimatorBuilder::find_annulus_pixels(const FieldStar& star, const StarEstimator& estimator) {
+void StarEstimatorBuilder::find_annulus_pixels(const FieldStar& star, const Rectangle& window,
+                                               const StarEstimator& estimator) {
   const double inner = settings_.annulus_inner.value();
   const double outer = settings_.annulus_outer.value();
   const Rectangle& region = layout_.regions()[estimator.region];
@@ -264,7 +282,8 @@ void StarEstimatorBuilder::find_annulus_pixels(const FieldStar& star, const Star
   const bool shared = settings_.method == PhotometryMethod::kAperture
                           ? settings_.aperture_radius.value() + 1.0 > inner
                           : static_cast<double>(settings_.mask_window) > inner;
-  const auto in_aperture = [&estimator](std::size_t pixel) {
+  const auto in_aperture = [&](int x, int y, std::size_t pixel) {
+    if (fits_psf_) return window.contains(x, y);
     return std::any_of(estimator.terms.begin(), estimator.terms.end(),
                        [pixel](const EstimatorTerm& term) { return term.pixel == pixel; });
   };
@@ -276,63 +295,55 @@ void StarEstimatorBuilder::find_annulus_pixels(const FieldStar& star, const Star
       const double square = dx * dx + dy * dy;
       if (square < inner * inner || square > outer * outer) continue;
       const std::size_t pixel = layout_.index(estimator.region, x, y);
-      if (!(shared && in_aperture(pixel))) found_.push_back(pixel);
+      if (!(shared && in_aperture(x, y, pixel))) found_.push_back(pixel);
     }
   }
 }
 
-bool StarEstimatorBuilder::add_local_background(const FieldStar& star, StarEstimator& estimator) {
-  find_annulus_pixels(star, estimator);
+void StarEstimatorBuilder::choose_annulus(const FieldStar& star, const Rectangle& window,
+                                          const StarEstimator& estimator) {
+  find_annulus_pixels(star, window, estimator);
   const std::span<const double> light = light_.pixels();
   std::stable_sort(found_.begin(), found_.end(), [light](std::size_t a, std::size_t b) { return light[a] < light[b]; });
   // From the darkest pixel on, take as many as make the mean best: noise falls, doubt of the star light rises.
   const double noise_variance = model_.noise.variance();
   double star_light = 0.0;
   double best_error = std::numeric_limits<double>::infinity();
-  double best_light = 0.0;
   std::size_t best_count = 0;
+  annulus_ = {};
   for (std::size_t k = 0; k < found_.size(); ++k) {
     star_light += light[found_[k]];
     const auto count = static_cast<double>(k + 1);
-    const double doubt = kStarLightDoubt * star_light / count;
+    const double doubt = model_.flux_doubt * star_light / count;
     const double error = (star_light / count + noise_variance) / count + doubt * doubt;
     if (k + 1 < kFewestBackgroundPixels || error >= best_error) continue;
     best_error = error;
-    best_light = star_light;
     best_count = k + 1;
+    annulus_.star_light = star_light;
+    annulus_.doubt = doubt;
   }
   const double worst = kWorstBackgroundError * kWorstBackgroundError * noise_variance;
-  if (best_count == 0 || (best_error > worst && noise_variance > 0.0)) return false;
+  annulus_.usable = best_count > 0 && (best_error <= worst || !(noise_variance > 0.0));
+  annulus_.error = std::sqrt(best_error);
   found_.resize(best_count);
   std::sort(found_.begin(), found_.end());
-  const auto count = static_cast<double>(best_count);
-  double weight_sum = 0.0;
-  for (const EstimatorTerm& term : estimator.terms) weight_sum += static_cast<double>(term.weight);
-  const auto weight = static_cast<float>(-weight_sum / count);
-  for (const std::size_t pixel : found_) estimator.terms.push_back({static_cast<std::uint32_t>(pixel), weight});
-  estimator.offset = -weight_sum * best_light / count;
-  estimator.budget.var_background_estimate =
-      (weight_sum / count) * (weight_sum / count) * (count * noise_variance + best_light);
-  return true;
 }
 
-void StarEstimatorBuilder::fill_gradients(std::size_t star, std::span<const std::size_t> neighbours,
-                                          StarEstimator& estimator) {
-  const Rectangle& region = layout_.regions()[estimator.region];
-  const Rectangle box = bounding_box(region, layout_, estimator);
-  const auto width = static_cast<std::size_t>(box.nx);
-  // target_ and contaminants_ become d/dx of the light; weights_ the weights over the smaller box.
-  weights_.assign(box.size(), 0.0);
-  for (std::size_t i = 0; i < estimator.aperture_terms; ++i) {
-    const std::size_t k = estimator.terms[i].pixel - layout_.offset(estimator.region);
-    const int x = region.x0 + static_cast<int>(k % static_cast<std::size_t>(region.nx));
-    const int y = region.y0 + static_cast<int>(k / static_cast<std::size_t>(region.nx));
-    weights_[static_cast<std::size_t>(y - box.y0) * width + static_cast<std::size_t>(x - box.x0)] =
-        static_cast<double>(estimator.terms[i].weight);
-  }
+void StarEstimatorBuilder::add_local_background(double weight_sum, StarEstimator& estimator) {
+  const auto count = static_cast<double>(found_.size());
+  const auto weight = static_cast<float>(-weight_sum / count);
+  for (const std::size_t pixel : found_) estimator.terms.push_back({static_cast<std::uint32_t>(pixel), weight});
+  estimator.offset += -weight_sum * annulus_.star_light / count;
+  estimator.budget.var_background_estimate =
+      (weight_sum / count) * (weight_sum / count) * (count * model_.noise.variance() + annulus_.star_light);
+}
+
+void StarEstimatorBuilder::differentiate(std::size_t star, const Rectangle& box,
+                                         std::span<const std::size_t> neighbours) {
   for (const bool along_x : {true, false}) {
-    target_.assign(box.size(), 0.0);
-    contaminants_.assign(box.size(), 0.0);
+    LightChange& change = along_x ? change_x_ : change_y_;
+    change.target.assign(box.size(), 0.0);
+    change.contaminants.assign(box.size(), 0.0);
     for (const double sign : {1.0, -1.0}) {
       const auto add_moved = [&](std::size_t index, const Rectangle& stamp, std::span<double> light) {
         FieldStar moved;
@@ -341,15 +352,40 @@ void StarEstimatorBuilder::fill_gradients(std::size_t star, std::span<const std:
         moved.electrons = sign * model_.stars[index].electrons;
         add_star(*model_.psf, moved, stamp, box, light, scratch_);
       };
-      add_moved(star, box, target_);
+      add_moved(star, box, change.target);
       for (const std::size_t neighbour : neighbours)
-        if (neighbour != star) add_moved(neighbour, stamps_[neighbour], contaminants_);
+        if (neighbour != star) add_moved(neighbour, stamps_[neighbour], change.contaminants);
     }
+  }
+}
+
+void StarEstimatorBuilder::fill_gradients(std::size_t star, std::span<const std::size_t> neighbours,
+                                          StarEstimator& estimator) {
+  // PSF weights have differentiated the light of their window before, and weights_ is over it.
+  if (!fits_psf_) {
+    const Rectangle& region = layout_.regions()[estimator.region];
+    const Rectangle box = bounding_box(region, layout_, estimator);
+    const auto width = static_cast<std::size_t>(box.nx);
+    // weights_ becomes the weights over the smaller box.
+    weights_.assign(box.size(), 0.0);
+    for (std::size_t i = 0; i < estimator.aperture_terms; ++i) {
+      const std::size_t k = estimator.terms[i].pixel - layout_.offset(estimator.region);
+      const int x = region.x0 + static_cast<int>(k % static_cast<std::size_t>(region.nx));
+      const int y = region.y0 + static_cast<int>(k / static_cast<std::size_t>(region.nx));
+      weights_[static_cast<std::size_t>(y - box.y0) * width + static_cast<std::size_t>(x - box.x0)] =
+          static_cast<double>(estimator.terms[i].weight);
+    }
+    differentiate(star, box, neighbours);
+  }
+  for (const bool along_x : {true, false}) {
+    const LightChange& light = along_x ? change_x_ : change_y_;
     double change = 0.0;
     double prnu = 0.0;
     for (std::size_t i = 0; i < weights_.size(); ++i) {
-      change += weights_[i] * (target_[i] + contaminants_[i]);
-      prnu += (weights_[i] * target_[i]) * (weights_[i] * target_[i]);
+      const double all = light.target[i] + light.contaminants[i];
+      const double judged = weights_[i] * (fits_psf_ ? all : light.target[i]);
+      change += weights_[i] * all;
+      prnu += judged * judged;
     }
     const double flux = estimator.budget.target + estimator.budget.contaminants;
     (along_x ? estimator.gradient_x : estimator.gradient_y) = change / (2.0 * kGradientStep * flux);

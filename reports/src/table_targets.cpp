@@ -39,7 +39,7 @@ void add_star(std::vector<TargetColumn>& c) {
       number("x", "px", "true column at the nominal pointing; the centre of the first pixel is 0", &TargetMetrics::x));
   c.push_back(
       number("y", "px", "true row at the nominal pointing; the centre of the first pixel is 0", &TargetMetrics::y));
-  c.push_back({"mask_pixels", "px", "pixels of the aperture with weight above 0",
+  c.push_back({"mask_pixels", "px", "pixels of the aperture with weight",
                [](const TargetMetrics& t) { return Cell(std::int64_t{t.mask_pixels}); }});
   c.push_back(number("enclosed_fraction", "", "share of the target's flux that the aperture collects, sum w p",
                      &TargetMetrics::enclosed_fraction));
@@ -145,6 +145,9 @@ void add_recovery(std::vector<TargetColumn>& c) {
                               &MagnitudeCauses::residual));
   c.push_back(number("delta_prnu_rms", "mag", "expected rms of delta_residual by fixed unequal pixels",
                      &TargetMetrics::prnu_magnitude));
+  c.push_back(number("delta_neighbours_rms", "mag",
+                     "rms of delta_residual if neighbours are 5 % other than believed and PSF weights took them out",
+                     &TargetMetrics::neighbour_magnitude));
   c.push_back({"exposures", "", "exposures in which the star was measured",
                [](const TargetMetrics& t) { return Cell(t.exposures); }});
   c.push_back({"missing", "", "exposures in which it could not be measured",

@@ -37,7 +37,7 @@ PhotometrySettings settings_of(const benchmark::State& state) {
 void methods(benchmark::internal::Benchmark* b) {
   b->ArgNames({"method", "background"});
   for (const PhotometryMethod method :
-       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted})
+       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted, PhotometryMethod::kPsf})
     for (const BackgroundMethod background : {BackgroundMethod::kKnown, BackgroundMethod::kLocal})
       b->Args({static_cast<long>(method), static_cast<long>(background)});
 }

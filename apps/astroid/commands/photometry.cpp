@@ -83,11 +83,12 @@ int photometry(const PhotometryOptions& options) {
   settings.psf = read_psf(options.psf);
   if (options.method == "mask") settings.method = PhotometryMethod::kMask;
   if (options.method == "weighted") settings.method = PhotometryMethod::kWeighted;
+  if (options.method == "psf") settings.method = PhotometryMethod::kPsf;
   if (settings.method != PhotometryMethod::kAperture && settings.psf == nullptr)
     throw InputError(Problem{.parameter = "--method",
                              .value = options.method,
                              .expected = "--psf FILE or --psf gaussian:SIGMA_PX with it",
-                             .message = "masks need the PSF"});
+                             .message = "all but apertures need the PSF"});
   if (options.radius) settings.aperture_radius = Pixels(*options.radius);
   if (options.zero_point) settings.zero_point = Magnitude(*options.zero_point);
   set_background(options.background, settings);

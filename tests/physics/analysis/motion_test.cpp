@@ -22,6 +22,14 @@ TEST(StarMotion, TurnsAnglesIntoPixelsAndRollIntoTangentialMotion) {
   EXPECT_EQ(edge.exposure.sxx, axis.exposure.sxx);
 }
 
+TEST(StarMotion, CountsLikePixelNoiseOfOneExposureByWhatItLeavesInABin) {
+  // The bin's motion has 2e-6 px²; pixel noise would have fallen to that from 144 × 24 times as much.
+  const MotionCovariance motion = motion_like_pixel_noise({2e-6, 5e-7, 1e-6}, 144.0, 24);
+  EXPECT_DOUBLE_EQ(motion.sxx, 2e-6 * 144.0 * 24.0);
+  EXPECT_DOUBLE_EQ(motion.sxy, 5e-7 * 144.0 * 24.0);
+  EXPECT_DOUBLE_EQ(motion.syy, 1e-6 * 144.0 * 24.0);
+}
+
 TEST(StarMotion, IsZeroWithoutJitter) {
   EXPECT_EQ(star_motion(Mission{}, 10.0, 20.0).exposure.sxx, 0.0);
 }

@@ -71,7 +71,8 @@ INSTANTIATE_TEST_SUITE_P(Methods, Recovery,
                          testing::Values(Case{"mask known", PhotometryMethod::kMask, BackgroundMethod::kKnown},
                                          Case{"mask local", PhotometryMethod::kMask, BackgroundMethod::kLocal},
                                          Case{"aperture local", PhotometryMethod::kAperture, BackgroundMethod::kLocal},
-                                         Case{"weighted known", PhotometryMethod::kWeighted, BackgroundMethod::kKnown}),
+                                         Case{"weighted known", PhotometryMethod::kWeighted, BackgroundMethod::kKnown},
+                                         Case{"psf local", PhotometryMethod::kPsf, BackgroundMethod::kLocal}),
                          [](const testing::TestParamInfo<Case>& parameter) {
                            std::string name = parameter.param.name;
                            name[name.find(' ')] = '_';

@@ -75,7 +75,9 @@ TEST(EstimatorErrors, HavePullWidthOneAndNoBias) {
   };
   for (const auto& [method, background] : {Method{PhotometryMethod::kMask, BackgroundMethod::kLocal},
                                            Method{PhotometryMethod::kAperture, BackgroundMethod::kKnown},
-                                           Method{PhotometryMethod::kWeighted, BackgroundMethod::kLocal}}) {
+                                           Method{PhotometryMethod::kWeighted, BackgroundMethod::kLocal},
+                                           Method{PhotometryMethod::kPsf, BackgroundMethod::kKnown},
+                                           Method{PhotometryMethod::kPsf, BackgroundMethod::kLocal}}) {
     PhotometrySettings settings;
     settings.method = method;
     settings.background = background;

@@ -69,7 +69,7 @@ TEST(EstimatorSet, SumsLikeTheDefinition) {
   const auto layout = test::full_frame(60, 50);
   const Frame frame = test::noisy_frame(layout, scene, test::expected_electrons(*layout, scene), test::TestNoise(4), 0);
   for (const PhotometryMethod method :
-       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted}) {
+       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted, PhotometryMethod::kPsf}) {
     for (const BackgroundMethod background :
          {BackgroundMethod::kKnown, BackgroundMethod::kLocal, BackgroundMethod::kMesh}) {
       const auto estimators = build_estimators(*layout, scene.model(), settings_of(method, background));
@@ -86,7 +86,7 @@ TEST(EstimatorSet, MeasuresTheExpectedFluxOnANoiselessFrame) {
   // Counts are floats: 24 bits of up to 1e6 ADU leave 1e-7 of the brightest pixel.
   const Frame frame = test::frame_of(layout, scene, test::expected_electrons(*layout, scene));
   for (const PhotometryMethod method :
-       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted}) {
+       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted, PhotometryMethod::kPsf}) {
     for (const BackgroundMethod background : {BackgroundMethod::kKnown, BackgroundMethod::kLocal}) {
       const auto estimators = build_estimators(*layout, scene.model(), settings_of(method, background));
       const Measured measured = measure(estimators, frame);

@@ -41,7 +41,7 @@ TEST(ImagePhotometry, RecoversTheFluxOfTheWholeStarByEveryMethod) {
   const test::GroundScene scene = three_stars();
   const Frame frame = clean_frame(scene);
   for (const PhotometryMethod method :
-       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted}) {
+       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted, PhotometryMethod::kPsf}) {
     for (const BackgroundMethod background :
          {BackgroundMethod::kKnown, BackgroundMethod::kLocal, BackgroundMethod::kMesh}) {
       ImagePhotometrySettings settings;
@@ -64,6 +64,30 @@ TEST(ImagePhotometry, RecoversTheFluxOfTheWholeStarByEveryMethod) {
         EXPECT_TRUE(std::isnan(measured[i].ra));
       }
     }
+  }
+}
+
+TEST(ImagePhotometry, TellsBlendedStarsApartByPsfWeights) {
+  test::GroundScene scene = three_stars();
+  const PixelPosition first = scene.stars[0].position;
+  scene.add_target({first.x + 2.0, first.y + 0.5}, 5e4);
+  ImagePhotometrySettings settings;
+  settings.psf = scene.psf;
+  settings.annulus_inner = Pixels(8.0);
+  settings.annulus_outer = Pixels(12.0);
+  settings.mask_window = 8;
+  const auto error_of = [&](PhotometryMethod method, std::size_t star) {
+    settings.method = method;
+    const auto measured = measure_image(clean_frame(scene), nullptr, requests_of(scene), settings);
+    const double error = measured[star].flux / scene.stars[star].electrons - 1.0;
+    if (method == PhotometryMethod::kPsf) {
+      EXPECT_LT(std::abs(measured[star].flux - scene.stars[star].electrons), 2.0 * measured[star].flux_err) << star;
+    }
+    return std::abs(error);
+  };
+  for (const std::size_t star : {std::size_t{0}, std::size_t{3}}) {
+    EXPECT_LT(error_of(PhotometryMethod::kPsf, star), 0.02) << star;
+    EXPECT_GT(error_of(PhotometryMethod::kMask, star), 0.05) << star;
   }
 }
 
@@ -91,7 +115,7 @@ TEST(ImagePhotometry, FlagsWhatIsWrongAndMeasuresTheRest) {
   requests.push_back({"nowhere", PixelPosition{std::numeric_limits<double>::quiet_NaN(), 1.0}, std::nullopt});
   requests.push_back({"unplaced", std::nullopt, std::nullopt});
   for (const PhotometryMethod method :
-       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted}) {
+       {PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted, PhotometryMethod::kPsf}) {
     ImagePhotometrySettings settings;
     settings.method = method;
     settings.psf = scene.psf;

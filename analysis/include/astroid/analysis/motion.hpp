@@ -18,4 +18,10 @@ struct StarMotion {
 /// @source UhlenbeckOrnstein1930
 StarMotion star_motion(const Mission& mission, double offset_x, double offset_y);
 
+/// Motion as noise of one exposure of one camera that would average out like pixel noise and leave as much in a bin:
+/// all cameras move together, and slow motion stays. What GroundModel::motion wants.
+/// @param bin                covariance of the mean displacement over a bin, px².
+/// @param exposures_per_bin  and @param cameras over which pixel noise averages.
+MotionCovariance motion_like_pixel_noise(const MotionCovariance& bin, double exposures_per_bin, int cameras);
+
 }  // namespace astroid

@@ -72,13 +72,14 @@ struct TargetMetrics {
   double nsr_exposure = 0.0;  ///< predicted.exposure
   double nsr_1h_ppm = 0.0;    ///< predicted.bin.total()
   PredictedNoise predicted;
-  double spr_tot = 0.0;         ///< stellar pollution ratio, sky excluded
-  double crowdsap = 0.0;        ///< 1 - spr_tot
-  double flfrcsap = 0.0;        ///< target's flux in the aperture / all flux of the target
-  double flux_in = 0.0;         ///< e- per exposure, all of the PSF
-  double flux_expected = 0.0;   ///< e- per exposure, target and contaminants in the aperture
-  std::uint32_t flags = 0;      ///< measurement_flag bits
-  double prnu_magnitude = 0.0;  ///< expected rms error of the magnitude by fixed unequal pixels, n cameras, mag
+  double spr_tot = 0.0;              ///< stellar pollution ratio, sky excluded
+  double crowdsap = 0.0;             ///< 1 - spr_tot
+  double flfrcsap = 0.0;             ///< target's flux in the aperture / all flux of the target
+  double flux_in = 0.0;              ///< e- per exposure, all of the PSF
+  double flux_expected = 0.0;        ///< e- per exposure, target and contaminants in the aperture
+  std::uint32_t flags = 0;           ///< measurement_flag bits
+  double prnu_magnitude = 0.0;       ///< expected rms error of the magnitude by fixed unequal pixels, n cameras, mag
+  double neighbour_magnitude = 0.0;  ///< the same by the doubt of neighbours' light that PSF weights take out, mag
 
   std::int64_t exposures = 0, missing = 0;
   double flux_measured = std::numeric_limits<double>::quiet_NaN();  ///< mean, e- per exposure, in the aperture

@@ -12,7 +12,7 @@ namespace astroid {
 enum class DetectorType { kCcd, kCmos };
 enum class JitterModel { kNone, kRedNoise, kFile };
 enum class PsfModel { kGaussian, kTable };
-enum class PhotometryMethod { kAperture, kMask, kWeighted };
+enum class PhotometryMethod { kAperture, kMask, kWeighted, kPsf };
 enum class BackgroundMethod { kKnown, kLocal, kMesh };
 enum class ImageOutput { kNone, kFirst, kEvery, kAll };
 enum class LightCurveOutput { kNone, kTargets, kAll };
@@ -102,7 +102,7 @@ struct CcdSettings {
 struct PhotometrySettings {
   PhotometryMethod method = PhotometryMethod::kMask;
   Pixels aperture_radius{3.0};
-  int mask_window = 6;     ///< side of the window in which masks may grow, px
+  int mask_window = 6;     ///< side of the window in which masks may grow and PSF weights are, px
   Pixels mask_reach{0.0};  ///< neighbours farther than this add nothing; 0: from the accuracy
   BackgroundMethod background = BackgroundMethod::kLocal;
   Pixels annulus_inner{5.0}, annulus_outer{8.0};

@@ -2,7 +2,8 @@
 //
 //   flux = sum_i weight_i * (counts_i - bias) * gain - offset          [e- per exposure]
 //
-// Aperture, binary mask, weighted mask and local background are all of this form, so their noise is known exactly.
+// Aperture, binary mask, weighted mask, PSF weights and local background are all of this form, so their noise is known
+// exactly.
 #pragma once
 
 #include <cstddef>
@@ -29,6 +30,7 @@ inline constexpr std::uint32_t kNoBackground = 1U << 4;  ///< too few background
 inline constexpr std::uint32_t kOutside = 1U << 5;       ///< the star is not on the frame: flux is NaN
 inline constexpr std::uint32_t kNoFlux = 1U << 6;        ///< no pixel with light of the target: flux is NaN
 inline constexpr std::uint32_t kSpoiltBackground = 1U << 7;  ///< background pixels are saturated or bloomed on
+inline constexpr std::uint32_t kBlended = 1U << 8;  ///< PSF weights can't tell the star from its neighbours well
 }  // namespace measurement_flag
 
 /// A star as the ground believes it to be.
@@ -48,18 +50,27 @@ struct GroundModel {
   Adu bias;
   double accuracy = 1e-6;             ///< of the faintest target's flux: what the cut-off wing of one neighbour may add
   double contamination_limit = 1e-3;  ///< share of neighbours in the flux above which kContaminated is set
+  /// Relative error that the believed flux of any other star may have: 0.05 mag, the quality of a good catalogue.
+  double flux_doubt = 0.05;
+  /// px², of all stars together, against which PSF weights guard as against noise of one exposure; motion that averages
+  /// out more slowly than pixel noise is to be given larger by that much. 0: the weights are those of stars at rest.
+  MotionCovariance motion;
 };
 
 /// Expected electrons and variance (e-, e-²) of one estimator in one exposure, cause by cause.
 struct EstimatorBudget {
   double target = 0.0;        ///< weighted electrons of the target
-  double contaminants = 0.0;  ///< weighted electrons of all other stars
+  double contaminants = 0.0;  ///< weighted electrons of all other stars that are in the flux
   double var_target = 0.0;    ///< photon noise of the target
   double var_contaminants = 0.0;
   double var_background = 0.0;  ///< photon noise of sky and dark under the aperture
   double var_readout = 0.0;
   double var_quantisation = 0.0;
   double var_background_estimate = 0.0;  ///< noise of the local background, 0 if it is known
+  /// Of an error of the flux that is the same in every exposure, so no part of variance(): the neighbours' light that
+  /// PSF weights take out may be wrong by GroundModel::flux_doubt. 0 for methods that leave it in the flux. Reported as
+  /// delta_neighbours_rms of targets.csv.
+  double var_neighbour_doubt = 0.0;
   [[nodiscard]] double variance() const {
     return var_target + var_contaminants + var_background + var_readout + var_quantisation + var_background_estimate;
   }
@@ -74,28 +85,38 @@ struct EstimatorTerm {
 /// The estimator of one target and what is known of it beforehand.
 ///
 /// Weights by method: an aperture's are the exact overlaps of the pixels with the circle; a mask's are 1; the weighted
-/// mask's are target / variance, normalised so that an isolated star gives all its flux (sum w p = 1).
-/// Background pixels share one negative weight, -(sum of aperture weights) / n_B.
+/// mask's are target / variance, normalised so that an isolated star gives all its flux (sum w p = 1). PSF weights are
+/// those of generalised least squares (F48), sum w p = 1; where a neighbour is, they are negative.
+/// Background pixels share one weight, -(sum of aperture weights) / n_B.
 struct StarEstimator {
   std::size_t star = 0;              ///< index into GroundModel::stars
   std::size_t region = 0;            ///< of the layout
   Rectangle window;                  ///< where the mask could grow
   std::vector<EstimatorTerm> terms;  ///< aperture pixels first
   std::size_t aperture_terms = 0;    ///< the rest are background pixels
-  double offset = 0.0;            ///< e-: known background under the aperture, or minus the stars' light in a local one
-  double known_background = 0.0;  ///< e- under the aperture, used instead of spoilt background pixels
-  int mask_pixels = 0;            ///< pixels with weight > 0 in the aperture
+  /// e-: known background under the aperture, or minus the stars' light in a local one; with PSF weights also what is
+  /// believed to be left of the neighbours.
+  double offset = 0.0;
+  double known_background = 0.0;   ///< e-, the offset that holds where background pixels are spoilt
+  int mask_pixels = 0;             ///< pixels with weight in the aperture
   double enclosed_fraction = 0.0;  ///< weighted fraction of the target's flux, sum w p
   double spr_total = 0.0;          ///< F20: contaminants / all stars, sky excluded
   double nsr_exposure = 0.0;       ///< sqrt(variance) / target, one exposure, one camera (F7 where background is known)
   double gradient_x = 0.0;         ///< d ln F / dx of target and contaminants moving together, 1/px
   double gradient_y = 0.0;
-  double prnu_gradient_x = 0.0;  ///< sqrt(sum (w dI/dx)²) / sum w I of the target, 1/px (F27)
+  /// sqrt(sum (w dI/dx)²) / sum w I of the target, 1/px (F27). With PSF weights, which use the pixels of neighbours
+  /// too, the sums of squares here and below are of the light of all stars.
+  double prnu_gradient_x = 0.0;
   double prnu_gradient_y = 0.0;
   double prnu_static = 0.0;  ///< sqrt(sum (w p)²) / sum w p (F28)
   EstimatorBudget budget;
   std::uint32_t flags = 0;  ///< measurement_flag bits that hold for every exposure
 };
+
+/// Growth of sigma beyond which a star is blended: two equally bright stars half a FWHM apart. @source F42
+inline constexpr double kBlendInflation = 1.4142135623730951;
+/// Share of the flux that may hang on the believed fluxes of neighbours before a star is blended: 0.01 mag.
+inline constexpr double kBlendDoubt = 0.01;
 
 /// Where the mask of a star may grow: `size` × `size` pixels from floor(x) - size/2 + 1 for an even size (for 6:
 /// floor(x) - 2), around the pixel that holds the star for an odd one.
@@ -105,16 +126,21 @@ struct StarEstimator {
 ///
 /// Neighbours enter with the light they shed on the target's pixels, whether or not they are on the frame. A local
 /// background is the mean of annulus pixels; the star light they are believed to carry is taken out through `offset`.
-/// The pixels are the darkest ones, as many as make the error of the mean smallest if that belief is 5 % wrong. With
-/// fewer than 12, or an error above half a sigma of a pixel, the known background is used and kNoBackground set. With a
-/// mesh the frames come with their background subtracted (background.hpp), and the estimators have no background term.
-/// A target whose centre is not on a pixel of the layout is kOutside; one without expected light is kNoFlux; both have
-/// no terms. Among several regions the one with most of the aperture is read.
+/// The pixels are the darkest ones, as many as make the error of the mean smallest if that belief is wrong by
+/// GroundModel::flux_doubt. With fewer than 12, or an error above half a sigma of a pixel, the known background is used
+/// and kNoBackground set. With a mesh the frames come with their background subtracted (background.hpp), and the
+/// estimators have no background term. A target whose centre is not on a pixel of the layout is kOutside; one without
+/// expected light is kNoFlux; both have no terms. Among several regions the one with most of the aperture is read.
+///
+/// PSF weights treat the neighbours' fluxes as known to flux_doubt, the local background to its error and the positions
+/// to GroundModel::motion; what they leave of the believed light is taken out, so that the flux is the target's alone.
+/// kBlended is set when the noise with the neighbours' doubt exceeds kBlendInflation times that with known neighbours,
+/// or the doubt kBlendDoubt of the flux.
 ///
 /// @param layout  pixels that the frames will have.
 /// @throws InputError when the settings contradict themselves or the layout.
 /// @complexity  O(targets × neighbours × window); 32,240 stars in 480×480 px: see BM_BuildEstimators.
-/// @source Marchiori2019 §4.6.3; F7, F9, F20, F27, F28.
+/// @source Marchiori2019 §4.6.3; F7, F9, F20, F27, F28, F48.
 std::vector<StarEstimator> build_estimators(const PixelLayout& layout, const GroundModel& model,
                                             const PhotometrySettings& settings);
 

@@ -46,7 +46,7 @@ struct ImagePhotometrySettings {
   PhotometryMethod method = PhotometryMethod::kAperture;
   Pixels aperture_radius{3.0};
   int mask_window = 6;
-  std::shared_ptr<const PixelPsf> psf;  ///< needed by masks; with it fluxes are those of the whole star
+  std::shared_ptr<const PixelPsf> psf;  ///< needed by masks and PSF weights; with it fluxes are those of the whole star
   bool whole_star = true;               ///< divide by the fraction of the PSF that the pixels hold
   BackgroundMethod background = BackgroundMethod::kLocal;
   Adu known_background;  ///< counts per pixel, bias included; for BackgroundMethod::kKnown
@@ -61,7 +61,8 @@ struct ImagePhotometrySettings {
 /// The level under a star is the clipped median of its annulus, the mesh at its pixel, or the given value; the noise of
 /// a pixel is the scatter measured with it, and for a given value its photon, readout and quantisation noise. With
 /// fewer than 12 annulus pixels the median of a mesh is used and kNoBackground set. Masks need a flux to begin with:
-/// an aperture of `aperture_radius` gives it, to the neighbours as well.
+/// an aperture of `aperture_radius` gives it, to the neighbours as well. PSF weights doubt that of the neighbours by
+/// 100 % and put what is left of the doubt into flux_err; stars that are not in `sources` are not known to them.
 /// @param frame  with gain, bias, readout noise and exposure time in its header, and flags set (read_frame()).
 /// @param sky    coordinates of the image, or nullptr.
 /// @throws InputError when the settings contradict themselves, or positions are in the sky and `sky` is nullptr. One

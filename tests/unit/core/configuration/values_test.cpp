@@ -77,6 +77,7 @@ TEST(ConfigurationChoices, ReachTheirEnumerators) {
   EXPECT_EQ(method("aperture"), PhotometryMethod::kAperture);
   EXPECT_EQ(method("mask"), PhotometryMethod::kMask);
   EXPECT_EQ(method("weighted"), PhotometryMethod::kWeighted);
+  EXPECT_EQ(method("psf"), PhotometryMethod::kPsf);
   const auto background = [](const std::string& word) {
     return with("<Photometry><Background>" + word + "</Background></Photometry>").photometry.background;
   };

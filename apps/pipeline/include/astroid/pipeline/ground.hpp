@@ -14,7 +14,7 @@ struct Ground {
   GroundModel model;
 };
 
-/// A ground that knows the stars, the PSF, the mean background and the detector exactly.
+/// A ground that knows the stars, the PSF, the mean background, the detector and the statistics of the jitter exactly.
 /// @param scene  must outlive the result.
 Ground perfect_ground(const Scene& scene);
 
