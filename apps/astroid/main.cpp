@@ -2,15 +2,19 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <new>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/vector_target.hpp"
 #include "command_line.hpp"
 
 int main(int argc, char** argv) {
   using astroid::ExitCode;
   try {
+    // To compare or to test instruction sets; results do not depend on them.
+    if (const char* target = std::getenv("ASTROID_VECTORS"); target != nullptr) astroid::force_vector_target(target);
     return astroid::run_command_line(argc, argv);
   } catch (const astroid::InputError& error) {
     const auto count = error.problems().size();

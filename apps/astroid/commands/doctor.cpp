@@ -1,9 +1,11 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
 
+#include "astroid/core/vector_target.hpp"
 #include "astroid/pipeline/run_record.hpp"
 #include "commands/commands.hpp"
 #include "commands/configuration.hpp"
@@ -14,6 +16,8 @@ int doctor() {
   for (const ComponentVersion& component : component_versions())
     fmt::print("{:<14} {}\n", component.name, component.version);
   fmt::print("{:<14} {}\n", "processors", std::thread::hardware_concurrency());
+  fmt::print("{:<14} {} of {} (ASTROID_VECTORS chooses; results are the same)\n", "vectors", vector_target(),
+             fmt::join(vector_targets(), ", "));
   fmt::print("\nMission presets and catalogues are looked for in\n");
   bool found = false;
   for (const auto& folder : data_folders()) {
