@@ -34,9 +34,10 @@ struct Product {
 /// @throws EnvironmentError(path, cause)
 [[nodiscard]] std::vector<Product> products_in(const std::filesystem::path& folder);
 
-/// The folder that `-o DIR` names. A run writes in DIR.partial; commit() renames it to DIR. A run that ends otherwise
-/// leaves DIR.partial (nothing if it is empty: neither it nor the folders above that were made for it). A lock keeps
-/// two runs from writing the same folder.
+/// The folder that `-o DIR` names. A run writes in DIR.partial; commit() synchronises what is in it, in one go, and
+/// renames it to DIR: so products need not be synchronised one by one (Durability::kWithFolder). A run that ends
+/// otherwise leaves DIR.partial (nothing if it is empty: neither it nor the folders above that were made for it). A
+/// lock keeps two runs from writing the same folder.
 /// @throws EnvironmentError(path, cause) when the disk or permissions fail, from every member function.
 class ProductFolder {
  public:
@@ -63,7 +64,8 @@ class ProductFolder {
   /// Every file so far but run.json, in the order of their names, with its checksum.
   [[nodiscard]] std::vector<Product> products() const;
 
-  /// Gives the folder its name. Files left over from products that were never completed are removed.
+  /// Synchronises the products and gives the folder its name. Files left over from products that were never completed
+  /// are removed.
   void commit();
 
  private:
