@@ -11,6 +11,7 @@
 #include <cerrno>
 #include <cstring>
 #include <system_error>
+#include <vector>
 
 #include "astroid/core/error.hpp"
 
@@ -18,16 +19,16 @@ namespace astroid {
 
 namespace {
 
-constexpr std::size_t kCardLength = 80;                  // characters, FITS standard
-constexpr std::size_t kValueColumn = 10;                 // where a card's value begins, from 0
-constexpr std::size_t kChunk = std::size_t{2880} * 364;  // bytes read at a time, about 1 MiB
+constexpr std::size_t kCardLength = 80;                 // characters, FITS standard
+constexpr std::size_t kValueColumn = 10;                // where a card's value begins, from 0
+constexpr std::size_t kChunk = std::size_t{2880} * 91;  // bytes read at a time, about 256 KiB: within fast caches
 
 [[noreturn]] void fail() {
   throw std::system_error(errno, std::generic_category());
 }
 
-std::string read_bytes(int descriptor, std::int64_t begin, std::size_t count) {
-  std::string bytes(count, '\0');
+void read_bytes(int descriptor, std::int64_t begin, std::span<char> bytes) {
+  const std::size_t count = bytes.size();
   std::size_t done = 0;
   while (done < count) {
     const ssize_t got = ::pread(descriptor, bytes.data() + done, count - done, begin + static_cast<std::int64_t>(done));
@@ -36,7 +37,6 @@ std::string read_bytes(int descriptor, std::int64_t begin, std::size_t count) {
     if (got == 0) throw BugError("FITS checksum: the file ends early");
     done += static_cast<std::size_t>(got);
   }
-  return bytes;
 }
 
 void set_text_value(std::string& header, std::string_view key, std::string_view value) {
@@ -81,13 +81,16 @@ void write_fits_checksums(int descriptor, std::span<const FitsUnitExtent> units)
   struct stat status {};
   if (::fstat(descriptor, &status) != 0) fail();
   if (!units.empty() && status.st_size < units.back().end && ::ftruncate(descriptor, units.back().end) != 0) fail();
+  std::vector<char> chunk(kChunk);
   for (const FitsUnitExtent& unit : units) {
     std::uint32_t data_sum = 0;
     for (std::int64_t at = unit.data; at < unit.end; at += static_cast<std::int64_t>(kChunk)) {
-      const auto count = std::min(kChunk, static_cast<std::size_t>(unit.end - at));
-      data_sum = fits_sum(read_bytes(descriptor, at, count), data_sum);
+      const std::span<char> bytes = std::span(chunk).first(std::min(kChunk, static_cast<std::size_t>(unit.end - at)));
+      read_bytes(descriptor, at, bytes);
+      data_sum = fits_sum({bytes.data(), bytes.size()}, data_sum);
     }
-    std::string header = read_bytes(descriptor, unit.header, static_cast<std::size_t>(unit.data - unit.header));
+    std::string header(static_cast<std::size_t>(unit.data - unit.header), '\0');
+    read_bytes(descriptor, unit.header, header);
     fill_fits_checksums(header, data_sum);
     const ssize_t written = ::pwrite(descriptor, header.data(), header.size(), unit.header);
     if (written < 0) fail();

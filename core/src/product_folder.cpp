@@ -139,11 +139,11 @@ fs::path ProductFolder::file(const fs::path& relative) const {
   return target;
 }
 
-std::vector<Product> ProductFolder::products() const {
-  return products_in(working());
+std::vector<Product> ProductFolder::products(const KnownChecksums& known) const {
+  return products_in(working(), known);
 }
 
-std::vector<Product> products_in(const fs::path& folder) {
+std::vector<Product> products_in(const fs::path& folder, const KnownChecksums& known) {
   std::vector<Product> result;
   on_disk(folder, [&] {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
@@ -154,7 +154,10 @@ std::vector<Product> products_in(const fs::path& folder) {
     }
   });
   std::sort(result.begin(), result.end(), [](const Product& a, const Product& b) { return a.path < b.path; });
-  for (Product& product : result) product.sha256 = sha256_of_file(folder / product.path);
+  for (Product& product : result) {
+    const auto found = known.find(product.path);
+    product.sha256 = found != known.end() ? found->second : sha256_of_file(folder / product.path);
+  }
   return result;
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,9 +31,12 @@ struct Product {
   std::string sha256;
 };
 
-/// Every complete file of a folder but run.json, in the order of their names, with its checksum.
-/// @throws EnvironmentError(path, cause)
-[[nodiscard]] std::vector<Product> products_in(const std::filesystem::path& folder);
+/// Checksums that are known, by the path relative to the folder.
+using KnownChecksums = std::map<std::string, std::string>;
+
+/// Every complete file of a folder but run.json, in the order of their names, with its checksum; `known` ones are
+/// taken as they are. @throws EnvironmentError(path, cause)
+[[nodiscard]] std::vector<Product> products_in(const std::filesystem::path& folder, const KnownChecksums& known = {});
 
 /// The folder that `-o DIR` names. A run writes in DIR.partial; commit() synchronises what is in it, in one go, and
 /// renames it to DIR: so products need not be synchronised one by one (Durability::kWithFolder). A run that ends
@@ -62,7 +66,7 @@ class ProductFolder {
   [[nodiscard]] std::filesystem::path file(const std::filesystem::path& relative) const;
 
   /// Every file so far but run.json, in the order of their names, with its checksum.
-  [[nodiscard]] std::vector<Product> products() const;
+  [[nodiscard]] std::vector<Product> products(const KnownChecksums& known = {}) const;
 
   /// Synchronises the products and gives the folder its name. Files left over from products that were never completed
   /// are removed.
