@@ -82,7 +82,7 @@ WrittenReport write_report(const fs::path& folder, const ReportInput& input) {
   make_folder(partial);
   write_text_file(partial / "columns.md", columns_markdown());
   const std::vector<Figure> figures = figures_of(input, noise, recovery);
-  written.problems = draw_figures(partial / "figures", figures);
+  written.problems = draw_figures(partial / "figures", figures, input.threads);
   PageContent content;
   content.input = &input;
   content.noise = noise;

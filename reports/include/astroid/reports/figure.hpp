@@ -40,11 +40,13 @@ inline constexpr const char* kJitter = "#d4a373";
 /// The gnuplot script of a figure: complete, run as `gnuplot name.gp` in its folder.
 std::string figure_script(const Figure& figure);
 
-/// Writes the data and the scripts into `folder` and draws each figure as PNG, SVG and PDF.
+/// Writes the data and the scripts into `folder` and draws each figure as PNG, SVG and PDF, `threads` at a time
+/// (< 1: as many as the process may run).
 ///
 /// @returns what went wrong, in words for the report; empty when every figure was drawn. Without gnuplot, one entry.
 /// @throws EnvironmentError when data or scripts cannot be written.
-std::vector<std::string> draw_figures(const std::filesystem::path& folder, std::span<const Figure> figures);
+std::vector<std::string> draw_figures(const std::filesystem::path& folder, std::span<const Figure> figures,
+                                      int threads = 0);
 
 /// True if gnuplot can be started.
 bool have_gnuplot();
