@@ -34,7 +34,7 @@ inline constexpr const char* kPhoton = "#5fa8d3";
 inline constexpr const char* kBackground = "#8ab17d";
 inline constexpr const char* kReadout = "#8e7dbe";
 inline constexpr const char* kQuantisation = "#b8b8b8";
-inline constexpr const char* kJitter = "#d4a373";
+inline constexpr const char* kJitter = "#c76b98";
 }  // namespace palette
 
 /// The gnuplot script of a figure: complete, run as `gnuplot name.gp` in its folder.
