@@ -2,33 +2,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <compare>
 #include <numeric>
+#include <tuple>
+
+#include "astroid/core/worker_pool.hpp"
 
 namespace astroid {
 
 namespace {
 
-/// Stars in order of x, to find those near a place without looking at all.
-class SortedByX {
+/// Stars in bands of y and in each by x, to find those near a place without looking at all.
+class Neighbourhood {
  public:
-  explicit SortedByX(std::span<const FieldStar> stars) : stars_(stars), order_(stars.size()) {
-    std::iota(order_.begin(), order_.end(), std::size_t{0});
-    std::stable_sort(order_.begin(), order_.end(),
-                     [stars](std::size_t a, std::size_t b) { return stars[a].position.x < stars[b].position.x; });
+  /// @param reach  how far neighbours may be, in x and in y.
+  Neighbourhood(std::span<const FieldStar> stars, double reach) : reach_(reach), stars_(stars) {
+    order_.reserve(stars.size());
+    for (std::size_t i = 0; i < stars.size(); ++i) {
+      const PixelPosition place = stars[i].position;
+      if (std::isfinite(place.x) && std::isfinite(place.y))
+        order_.push_back({.band = band_of(place.y), .x = place.x, .star = i});
+    }
+    std::ranges::sort(order_);
   }
 
   template <class Visit>
-  void near(PixelPosition place, double reach, Visit visit) const {
-    auto it = std::lower_bound(order_.begin(), order_.end(), place.x - reach,
-                               [this](std::size_t star, double x) { return stars_[star].position.x < x; });
-    for (; it != order_.end() && stars_[*it].position.x <= place.x + reach; ++it) {
-      if (std::abs(stars_[*it].position.y - place.y) <= reach) visit(*it);
+  void visit(PixelPosition place, Visit visit) const {
+    for (double band = band_of(place.y - reach_); band <= band_of(place.y + reach_); ++band) {
+      const Entry begin{.band = band, .x = place.x - reach_, .star = 0};
+      for (auto it = std::ranges::lower_bound(order_, begin);
+           it != order_.end() && it->band == band && it->x <= place.x + reach_; ++it)
+        if (std::abs(stars_[it->star].position.y - place.y) <= reach_) visit(it->star);
     }
   }
 
  private:
+  struct Entry {
+    double band;  // whole number
+    double x;
+    std::size_t star;
+    friend auto operator<=>(const Entry&, const Entry&) = default;
+  };
+  [[nodiscard]] double band_of(double y) const { return std::floor(y / reach_); }
+
+  double reach_;
   std::span<const FieldStar> stars_;
-  std::vector<std::size_t> order_;
+  std::vector<Entry> order_;
+};
+
+/// A neighbour and its share.
+struct Share {
+  double spr;
+  std::size_t star;
 };
 
 /// The weights of an aperture on the pixels of a box.
@@ -72,33 +97,39 @@ std::vector<double> aperture_weights(const StarEstimator& estimator, const Pixel
 
 std::vector<std::vector<Contaminant>> strongest_contaminants(std::span<const StarEstimator> estimators,
                                                              const PixelLayout& layout, const GroundModel& model,
-                                                             double reach, std::size_t count) {
-  const SortedByX sorted(model.stars);
+                                                             double reach, std::size_t count, int threads) {
+  const Neighbourhood neighbourhood(model.stars, reach);
   std::vector<std::vector<Contaminant>> lists(estimators.size());
-  std::vector<double> fractions;
-  for (std::size_t e = 0; e < estimators.size(); ++e) {
+  // Larger shares first; equal ones from left to right.
+  const auto before = [&](const Share& a, const Share& b) {
+    return std::tuple(-a.spr, model.stars[a.star].position.x, a.star) <
+           std::tuple(-b.spr, model.stars[b.star].position.x, b.star);
+  };
+  parallel_for(threads, estimators.size(), [&](std::size_t /*worker*/, std::size_t e) {
     const StarEstimator& estimator = estimators[e];
     const double all_light = estimator.budget.target + estimator.budget.contaminants;
-    if (estimator.aperture_terms == 0 || !(all_light > 0.0)) continue;
+    if (estimator.aperture_terms == 0 || !(all_light > 0.0)) return;
     Rectangle box;
     const std::vector<double> weights = aperture_weights(estimator, layout, box);
-    fractions.resize(weights.size());
+    std::vector<double> fractions(weights.size());
+    std::vector<Share> shares;
     const FieldStar& target = model.stars[estimator.star];
-    std::vector<Contaminant>& list = lists[e];
-    sorted.near(target.position, reach, [&](std::size_t neighbour) {
+    neighbourhood.visit(target.position, [&](std::size_t neighbour) {
       if (neighbour == estimator.star) return;
       const FieldStar& star = model.stars[neighbour];
       model.psf->integrate(star.position, box, fractions);
       const double enclosed = std::inner_product(weights.begin(), weights.end(), fractions.begin(), 0.0);
       const double spr = star.electrons * enclosed / all_light;
-      if (!(spr > 0.0)) return;
-      list.push_back(
-          {star.id, star.position.x - target.position.x, star.position.y - target.position.y, star.electrons, spr});
+      if (spr > 0.0) shares.push_back({spr, neighbour});
     });
-    std::stable_sort(list.begin(), list.end(),
-                     [](const Contaminant& a, const Contaminant& b) { return a.spr > b.spr; });
-    if (list.size() > count) list.resize(count);
-  }
+    const auto end = shares.begin() + static_cast<std::ptrdiff_t>(std::min(count, shares.size()));
+    std::partial_sort(shares.begin(), end, shares.end(), before);
+    for (auto it = shares.begin(); it != end; ++it) {
+      const FieldStar& star = model.stars[it->star];
+      lists[e].push_back(
+          {star.id, star.position.x - target.position.x, star.position.y - target.position.y, star.electrons, it->spr});
+    }
+  });
   return lists;
 }
 

@@ -41,9 +41,9 @@ std::filesystem::path partial_path(const std::filesystem::path& path) {
   return partial;
 }
 
-void rename_durably(const std::filesystem::path& from, const std::filesystem::path& to) {
+void rename_complete(const std::filesystem::path& from, const std::filesystem::path& to, Durability durability) {
   if (std::rename(from.c_str(), to.c_str()) != 0) throw EnvironmentError(to.string(), cause_of(errno));
-  synchronise_folder(to.parent_path());
+  if (durability == Durability::kAtOnce) synchronise_folder(to.parent_path());
 }
 
 AtomicFile::AtomicFile(std::filesystem::path path) : path_(std::move(path)) {
@@ -66,38 +66,53 @@ AtomicFile::~AtomicFile() {
 }
 
 void AtomicFile::flush() {
-  std::string_view rest = buffer_;
-  while (!rest.empty()) {
-    const ssize_t written = ::write(descriptor_, rest.data(), rest.size());
+  write_out(buffer_);
+  buffer_.clear();
+}
+
+void AtomicFile::write_out(std::string_view bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
     if (written < 0 && errno == EINTR) continue;
     if (written < 0) throw EnvironmentError(path_.string(), cause_of(errno));
-    rest.remove_prefix(static_cast<std::size_t>(written));
+    bytes.remove_prefix(static_cast<std::size_t>(written));
   }
-  buffer_.clear();
 }
 
 void AtomicFile::write(std::string_view bytes) {
   if (descriptor_ < 0) throw BugError("AtomicFile: written to after its end: " + path_.string());
-  while (!bytes.empty()) {
-    const std::size_t part = std::min(bytes.size(), kBufferBytes - buffer_.size());
-    buffer_.append(bytes.substr(0, part));
-    bytes.remove_prefix(part);
-    if (buffer_.size() == kBufferBytes) flush();
+  if (bytes.size() >= kBufferBytes) {
+    flush();
+    write_out(bytes);
+    return;
   }
+  const std::size_t part = std::min(bytes.size(), kBufferBytes - buffer_.size());
+  buffer_.append(bytes.substr(0, part));
+  if (buffer_.size() == kBufferBytes) flush();
+  buffer_.append(bytes.substr(part));
 }
 
-void AtomicFile::commit() {
+void AtomicFile::overwrite(std::uint64_t at, std::string_view bytes) {
+  if (descriptor_ < 0) throw BugError("AtomicFile: written to after its end: " + path_.string());
+  flush();
+  const off_t end = ::lseek(descriptor_, 0, SEEK_CUR);
+  if (end < 0) throw EnvironmentError(path_.string(), cause_of(errno));
+  ASTROID_CHECK_LE(at + bytes.size(), static_cast<std::uint64_t>(end));
+  if (::lseek(descriptor_, static_cast<off_t>(at), SEEK_SET) < 0)
+    throw EnvironmentError(path_.string(), cause_of(errno));
+  write_out(bytes);
+  if (::lseek(descriptor_, end, SEEK_SET) < 0) throw EnvironmentError(path_.string(), cause_of(errno));
+}
+
+void AtomicFile::commit(Durability durability) {
   if (descriptor_ < 0) throw BugError("AtomicFile: committed twice: " + path_.string());
   flush();
-  if (::fsync(descriptor_) != 0) throw EnvironmentError(path_.string(), cause_of(errno));
-  // Some file systems report a full disk only here. The descriptor is gone even when close() fails.
-  if (::close(std::exchange(descriptor_, -1)) != 0) {
-    const int error_number = errno;
-    ::unlink(partial_path(path_).c_str());
-    throw EnvironmentError(path_.string(), cause_of(error_number));
-  }
+  if (durability == Durability::kAtOnce && ::fsync(descriptor_) != 0)
+    throw EnvironmentError(path_.string(), cause_of(errno));
   try {
-    rename_durably(partial_path(path_), path_);
+    // Some file systems report a full disk only here. The descriptor is gone even when close() fails.
+    if (::close(std::exchange(descriptor_, -1)) != 0) throw EnvironmentError(path_.string(), cause_of(errno));
+    rename_complete(partial_path(path_), path_, durability);
   } catch (...) {
     ::unlink(partial_path(path_).c_str());
     throw;

@@ -21,6 +21,9 @@ struct FitsUnitExtent {
 /// The 16 characters that make a unit of that sum add up to -0.
 [[nodiscard]] std::string encode_fits_checksum(std::uint32_t sum);
 
+/// Fills the CHECKSUM and DATASUM cards of a unit's header, which must hold them, from the sum of its data.
+void fill_fits_checksums(std::string& header, std::uint32_t data_sum);
+
 /// Fills the CHECKSUM and DATASUM cards, which every header must already hold, of a complete file; a file that ends
 /// before the last unit's end is extended with zeros. Not by CFITSIO: its function puts the time of day into the
 /// comments and reads large images slowly.

@@ -34,6 +34,9 @@ struct FitsReader::State {
   const FitsUnit& go_to(int unit, FitsUnit::Kind kind) const;
   void go_to(int unit) const;
 
+  /// @throws InputError unless the table has these rows.
+  void check_rows(int unit, std::int64_t first, std::int64_t count) const;
+
   /// Runs a CFITSIO function on the file and returns its status.
   template <class Function, class... Arguments>
   int attempt(Function function, Arguments... arguments) const {

@@ -62,16 +62,18 @@ std::optional<std::size_t> FitsReader::find_column(int unit, const std::string& 
   return other_case;
 }
 
+void FitsReader::State::check_rows(int unit, std::int64_t first, std::int64_t count) const {
+  const std::int64_t rows = units[static_cast<std::size_t>(unit) - 1].rows;
+  if (first < 0 || count < 0 || first > rows || count > rows - first)
+    throw refuse(fmt::format("{} has no rows {} to {}", unit_text(unit), first, first + count), "rows of the table");
+}
+
 std::vector<double> FitsReader::read_numbers(int unit, std::size_t column, std::int64_t first_row,
                                              std::int64_t count) const {
   const FitsColumnInfo info = column_info(unit, column);
-  const std::int64_t rows = units()[static_cast<std::size_t>(unit) - 1].rows;
   if (info.is_text)
     throw state_->refuse(fmt::format("column {} of {} holds texts", info.name, state_->unit_text(unit)), "numbers");
-  if (first_row < 0 || count < 0 || first_row > rows || count > rows - first_row) {
-    throw state_->refuse(fmt::format("{} has no rows {} to {}", state_->unit_text(unit), first_row, first_row + count),
-                         "rows of the table");
-  }
+  state_->check_rows(unit, first_row, count);
   std::vector<double> values(static_cast<std::size_t>(count * info.per_row));
   if (values.empty()) return values;
   double missing = std::numeric_limits<double>::quiet_NaN();
@@ -86,23 +88,29 @@ std::vector<double> FitsReader::read_numbers(int unit, std::size_t column) const
   return read_numbers(unit, column, 0, units()[static_cast<std::size_t>(unit) - 1].rows);
 }
 
-std::vector<std::int64_t> FitsReader::read_integers(int unit, std::size_t column) const {
+std::vector<std::int64_t> FitsReader::read_integers(int unit, std::size_t column, std::int64_t first_row,
+                                                    std::int64_t count) const {
   const FitsColumnInfo info = column_info(unit, column);
-  const std::int64_t rows = units()[static_cast<std::size_t>(unit) - 1].rows;
   if (!info.is_integer) {
     throw state_->refuse(
         fmt::format("column {} of {} holds other than whole numbers", info.name, state_->unit_text(unit)),
         "whole numbers");
   }
-  std::vector<std::int64_t> values(static_cast<std::size_t>(rows * info.per_row));
+  state_->check_rows(unit, first_row, count);
+  std::vector<std::int64_t> values(static_cast<std::size_t>(count * info.per_row));
   if (values.empty()) return values;
   LONGLONG missing = std::numeric_limits<std::int64_t>::min();
   int any_missing = 0;
   std::vector<LONGLONG> numbers(values.size());
-  state_->call(&ffgcv, TLONGLONG, static_cast<int>(column) + 1, LONGLONG{1}, LONGLONG{1},
+  state_->call(&ffgcv, TLONGLONG, static_cast<int>(column) + 1, LONGLONG{first_row + 1}, LONGLONG{1},
                static_cast<LONGLONG>(numbers.size()), &missing, numbers.data(), &any_missing);
   std::copy(numbers.begin(), numbers.end(), values.begin());
   return values;
+}
+
+std::vector<std::int64_t> FitsReader::read_integers(int unit, std::size_t column) const {
+  (void)state_->go_to(unit, FitsUnit::Kind::kTable);
+  return read_integers(unit, column, 0, units()[static_cast<std::size_t>(unit) - 1].rows);
 }
 
 std::vector<std::string> FitsReader::read_texts(int unit, std::size_t column) const {

@@ -5,10 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdlib>
-#include <ctime>
 #include <functional>
 #include <limits>
 #include <numeric>
@@ -16,20 +13,15 @@
 #include <type_traits>
 #include <utility>
 
-#include "astroid/core/atomic_file.hpp"
-#include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
 #include "cfitsio_call.hpp"
+#include "fits_cards.hpp"
 #include "fits_checksum.hpp"
 #include "fits_large_image.hpp"
 
 namespace astroid {
 
 namespace {
-
-constexpr std::size_t kLongestKey = 8;    // characters, FITS standard
-constexpr std::size_t kLongestText = 68;  // characters of a text that fits on one card
-const std::string kZeroChecksum(16, '0');
 
 int image_code(FitsNumber number) {
   switch (number) {
@@ -68,21 +60,6 @@ std::string column_format(const FitsColumn& column) {
   throw BugError("FitsWriter: column " + column.name + " has a format for images only");
 }
 
-std::string ascii(std::string_view text) {
-  std::string result(text);
-  std::replace_if(
-      result.begin(), result.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-  return result;
-}
-
-// "15" -> "15.", "1e+22" -> "1E+22": shortest text that FITS takes for a floating-point number.
-std::string fits_text(double value) {
-  std::string text = shortest_text(value);
-  std::replace(text.begin(), text.end(), 'e', 'E');
-  if (text.find_first_of(".E") == std::string::npos) text += '.';
-  return text;
-}
-
 template <class T>
 constexpr int type_code() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return TBYTE;
@@ -116,17 +93,6 @@ std::pair<double, double> integer_range(FitsNumber number) {
   }
 }
 
-std::string now() {
-  // https://reproducible-builds.org/specs/source-date-epoch: files made twice are the same to the byte.
-  const char* epoch = std::getenv("SOURCE_DATE_EPOCH");
-  const std::time_t time =
-      epoch != nullptr ? static_cast<std::time_t>(std::strtoll(epoch, nullptr, 10)) : std::time(nullptr);
-  std::tm utc{};
-  gmtime_r(&time, &utc);
-  return fmt::format("{:04}-{:02}-{:02}T{:02}:{:02}:{:02}", utc.tm_year + 1900, utc.tm_mon + 1, utc.tm_mday,
-                     utc.tm_hour, utc.tm_min, utc.tm_sec);
-}
-
 }  // namespace
 
 struct FitsWriter::State {
@@ -154,15 +120,20 @@ struct FitsWriter::State {
   State(State&&) = delete;
   State& operator=(State&&) = delete;
 
-  // Runs a CFITSIO function with a status of its own and turns failure into an EnvironmentError.
-  template <class Function, class... Arguments>
-  void call(Function function, Arguments... arguments) {
+  // Runs a function of a CFITSIO status and turns failure into an EnvironmentError.
+  template <class Function>
+  void checked(Function function) {
     if (file == nullptr) throw BugError("FitsWriter: used after its end: " + path.string());
     const CfitsioLock lock;
     int status = 0;
     errno = 0;
-    function(file, arguments..., &status);
+    function(&status);
     if (status != 0) throw EnvironmentError(path.string(), cfitsio_message(status, errno));
+  }
+  // The same for a function of CFITSIO.
+  template <class Function, class... Arguments>
+  void call(Function function, Arguments... arguments) {
+    checked([&](int* status) { function(file, arguments..., status); });
   }
 
   // Runs a function on the second descriptor and names the file when it fails.
@@ -206,46 +177,14 @@ struct FitsWriter::State {
   int finish_beginning(Unit unit, const std::string& name) {
     units.push_back(std::move(unit));
     current = units.size() - 1;
-    // All of them now, for a header must not grow once data follow it.
-    if (!name.empty()) set({"EXTNAME", name, "name of this unit"});
-    set({"DATE", now(), "[UTC] when this unit was written"});
-    set({"CHECKSUM", kZeroChecksum, "of the unit"});
-    set({"DATASUM", "0", "of the data"});
+    checked([&](int* status) { set_fits_unit_cards(file, name, status); });
     return static_cast<int>(units.size());
   }
 
   void set(const FitsCard& card) {
     if (units.empty()) throw BugError("FitsWriter: keyword before the first unit");
-    if (card.key.empty() || card.key.size() > kLongestKey) throw BugError("FitsWriter: keyword '" + card.key + "'");
     if (units[current].data_start != 0) throw BugError("FitsWriter: keyword after the first pixel of a large image");
-    const std::string comment = ascii(card.comment);
-    if (const auto* text = std::get_if<std::string>(&card.value)) {
-      const std::string value = ascii(*text);
-      if (value.size() > kLongestText) call(&ffplsw);  // announces texts of several cards, once
-      const auto write = value.size() > kLongestText ? &ffukls : &ffukys;
-      call(write, card.key.c_str(), value.c_str(), comment.c_str());
-      return;
-    }
-    if (const auto* flag = std::get_if<bool>(&card.value)) {
-      call(&ffukyl, card.key.c_str(), *flag ? 1 : 0, comment.c_str());
-    } else if (const auto* integer = std::get_if<std::int64_t>(&card.value)) {
-      call(&ffukyj, card.key.c_str(), LONGLONG{*integer}, comment.c_str());
-    } else {
-      const double number = std::get<double>(card.value);
-      if (!std::isfinite(number)) {
-        set({card.key, shortest_text(number), card.comment});
-        return;
-      }
-      // Not ffukyd, which has 15 digits or a fixed number of them.
-      std::array<char, FLEN_CARD> line{};
-      std::string value = fits_text(number);
-      value.insert(0, value.size() < 20 ? 20 - value.size() : 0, ' ');
-      const CfitsioLock lock;
-      int status = 0;
-      fits_make_key(card.key.c_str(), value.data(), comment.c_str(), line.data(), &status);
-      if (status != 0) throw BugError("FitsWriter: cannot make a card of " + card.key);
-      call(&ffucrd, card.key.c_str(), line.data());
-    }
+    checked([&](int* status) { set_fits_card(file, card, status); });
   }
 
   template <class T>
@@ -382,7 +321,8 @@ void FitsWriter::cards(std::span<const FitsCard> cards) {
 }
 
 void FitsWriter::history(std::string_view line) {
-  state_->call(&ffphis, ascii(line).c_str());
+  State& s = *state_;
+  s.checked([&](int* status) { add_fits_history(s.file, line, status); });
 }
 
 void FitsWriter::check_plane(int nx, int ny, std::int64_t plane) const {
@@ -428,7 +368,7 @@ void FitsWriter::write_column(std::size_t column, std::int64_t first_row, std::s
   texts.reserve(values.size());
   for (const std::string& value : values) {
     ASTROID_CHECK_LE(value.size(), static_cast<std::size_t>(width));
-    texts.push_back(ascii(value));
+    texts.push_back(printable_ascii(value));
   }
   std::vector<char*> pointers;
   pointers.reserve(texts.size());
@@ -437,7 +377,7 @@ void FitsWriter::write_column(std::size_t column, std::int64_t first_row, std::s
                static_cast<LONGLONG>(pointers.size()), pointers.data());
 }
 
-void FitsWriter::commit() {
+void FitsWriter::commit(Durability durability) {
   State& s = *state_;
   if (s.units.empty()) throw BugError("FitsWriter: nothing was written to " + s.path.string());
   const std::string partial = partial_path(s.path).string();
@@ -467,10 +407,11 @@ void FitsWriter::commit() {
     check(status);
     s.attempt([&] {
       write_fits_checksums(s.descriptor, extents);
-      if (::fsync(s.descriptor) != 0) throw std::system_error(errno, std::generic_category());
+      if (durability == Durability::kAtOnce && ::fsync(s.descriptor) != 0)
+        throw std::system_error(errno, std::generic_category());
       if (::close(std::exchange(s.descriptor, -1)) != 0) throw std::system_error(errno, std::generic_category());
     });
-    rename_durably(partial, s.path);
+    rename_complete(partial, s.path, durability);
   } catch (...) {
     s.discard();
     throw;

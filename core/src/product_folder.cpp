@@ -53,15 +53,25 @@ void check_final_folder(const fs::path& path, ExistingProducts existing) {
   }
 }
 
+// Brings all files of a folder to the disk: with their file system, because synchronising thousands of files one after
+// the other waits for the disk as many times.
+void synchronise_files(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  const bool done = descriptor >= 0 && ::syncfs(descriptor) == 0;
+  const int error_number = errno;
+  if (descriptor >= 0) ::close(descriptor);
+  if (!done) throw EnvironmentError(folder.string(), std::generic_category().message(error_number));
+}
+
 // Swaps two folders in one step, so that there is no moment without either; in three where the file system cannot.
 void exchange(const fs::path& a, const fs::path& b) {
   if (::renameat2(AT_FDCWD, a.c_str(), AT_FDCWD, b.c_str(), RENAME_EXCHANGE) == 0) return;
   if (errno != EINVAL && errno != ENOSYS) throw EnvironmentError(b.string(), std::generic_category().message(errno));
   fs::path aside = b;
   aside += ".replaced";
-  rename_durably(b, aside);
-  rename_durably(a, b);
-  rename_durably(aside, a);
+  rename_complete(b, aside);
+  rename_complete(a, b);
+  rename_complete(aside, a);
 }
 
 }  // namespace
@@ -129,11 +139,11 @@ fs::path ProductFolder::file(const fs::path& relative) const {
   return target;
 }
 
-std::vector<Product> ProductFolder::products() const {
-  return products_in(working());
+std::vector<Product> ProductFolder::products(const KnownChecksums& known) const {
+  return products_in(working(), known);
 }
 
-std::vector<Product> products_in(const fs::path& folder) {
+std::vector<Product> products_in(const fs::path& folder, const KnownChecksums& known) {
   std::vector<Product> result;
   on_disk(folder, [&] {
     for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
@@ -144,7 +154,10 @@ std::vector<Product> products_in(const fs::path& folder) {
     }
   });
   std::sort(result.begin(), result.end(), [](const Product& a, const Product& b) { return a.path < b.path; });
-  for (Product& product : result) product.sha256 = sha256_of_file(folder / product.path);
+  for (Product& product : result) {
+    const auto found = known.find(product.path);
+    product.sha256 = found != known.end() ? found->second : sha256_of_file(folder / product.path);
+  }
   return result;
 }
 
@@ -160,10 +173,11 @@ void ProductFolder::commit() {
   if (committed_) throw BugError("ProductFolder: committed twice: " + path_.string());
   on_disk(path_, [&] {
     remove_unfinished_files();
+    synchronise_files(working());
     const bool replaces = fs::exists(path_) && !fs::is_empty(path_);
     unlock();
     if (!replaces) {
-      rename_durably(working(), path_);
+      rename_complete(working(), path_);
     } else {
       exchange(working(), path_);
       fs::remove_all(working());

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "astroid/core/error.hpp"
 #include "astroid/core/fits.hpp"
@@ -71,34 +72,79 @@ std::vector<LightCurveStar> read_stars(const FitsReader& reader) {
   return stars;
 }
 
-// Flags of one star, of one camera or (0) of all.
-void add_sparse_flags(const FitsReader& reader, std::size_t star, int camera, std::vector<std::uint32_t>& flags) {
-  const int unit = unit_named(reader, "FLAGS");
-  const auto cameras = reader.read_integers(unit, column_of(reader, unit, "CAMERA"));
-  const auto stars = reader.read_integers(unit, column_of(reader, unit, "STAR"));
-  const auto exposures = reader.read_integers(unit, column_of(reader, unit, "CADENCENO"));
-  const auto bits = reader.read_integers(unit, column_of(reader, unit, "FLAGS"));
-  for (std::size_t i = 0; i < bits.size(); ++i) {
-    const bool mine = stars[i] == static_cast<std::int64_t>(star) && (camera == 0 || cameras[i] == camera);
-    const bool inside = exposures[i] >= 0 && exposures[i] < static_cast<std::int64_t>(flags.size());
-    if (mine && inside) flags[static_cast<std::size_t>(exposures[i])] |= static_cast<std::uint32_t>(bits[i]);
+// The table FLAGS, whose rows are in the order of camera, star and exposure: so a search finds those of one star
+// without reading the others, of which there can be millions.
+class FlagTable {
+ public:
+  explicit FlagTable(const FitsReader& reader)
+      : reader_(reader),
+        unit_(unit_named(reader, "FLAGS")),
+        rows_(reader.units()[static_cast<std::size_t>(unit_) - 1].rows),
+        camera_(column_of(reader, unit_, "CAMERA")),
+        star_(column_of(reader, unit_, "STAR")),
+        exposure_(column_of(reader, unit_, "CADENCENO")),
+        flags_(column_of(reader, unit_, "FLAGS")) {}
+
+  // Adds those of one star and camera to the flags of its exposures.
+  void add(int camera, std::size_t star, std::vector<std::uint32_t>& flags) const {
+    const auto number = static_cast<std::int64_t>(star);
+    const std::int64_t first = first_not_before(camera, number);
+    const std::int64_t count = first_not_before(camera, number + 1) - first;
+    const std::vector<std::int64_t> exposures = reader_.read_integers(unit_, exposure_, first, count);
+    const std::vector<std::int64_t> bits = reader_.read_integers(unit_, flags_, first, count);
+    for (std::size_t i = 0; i < bits.size(); ++i) {
+      const bool inside = exposures[i] >= 0 && exposures[i] < static_cast<std::int64_t>(flags.size());
+      if (inside) flags[static_cast<std::size_t>(exposures[i])] |= static_cast<std::uint32_t>(bits[i]);
+    }
   }
-}
+
+ private:
+  [[nodiscard]] std::int64_t first_not_before(std::int64_t camera, std::int64_t star) const {
+    std::int64_t low = 0;
+    std::int64_t high = rows_;
+    while (low < high) {
+      const std::int64_t middle = low + (high - low) / 2;
+      const std::int64_t its_camera = reader_.read_integers(unit_, camera_, middle, 1).front();
+      const std::int64_t its_star = reader_.read_integers(unit_, star_, middle, 1).front();
+      if (std::pair(its_camera, its_star) < std::pair(camera, star)) {
+        low = middle + 1;
+      } else {
+        high = middle;
+      }
+    }
+    return low;
+  }
+
+  const FitsReader& reader_;
+  int unit_;
+  std::int64_t rows_;
+  std::size_t camera_, star_, exposure_, flags_;
+};
 
 }  // namespace
 
-LightCurveContents read_light_curve_contents(const std::string& path) {
-  const FitsReader reader(path);
-  return {read_header(reader), read_stars(reader)};
+struct LightCurveReader::Impl {
+  explicit Impl(const std::string& path)
+      : reader(path), contents{read_header(reader), read_stars(reader)}, flags(reader) {}
+
+  FitsReader reader;
+  LightCurveContents contents;
+  FlagTable flags;
+};
+
+LightCurveReader::LightCurveReader(const std::string& path) : impl_(std::make_unique<Impl>(path)) {}
+
+LightCurveReader::~LightCurveReader() = default;
+
+const LightCurveContents& LightCurveReader::contents() const {
+  return impl_->contents;
 }
 
-LightCurve read_light_curve(const std::string& path, const std::string& id, int camera) {
-  const FitsReader reader(path);
-  const LightCurveHeader header = read_header(reader);
-  const std::vector<LightCurveStar> stars = read_stars(reader);
-  const auto found = std::find_if(stars.begin(), stars.end(), [&id](const LightCurveStar& s) { return s.id == id; });
-  if (found == stars.end())
-    refuse(reader, "star", id, "the file has no such star",
+LightCurve LightCurveReader::read(std::size_t star, int camera) const {
+  const FitsReader& reader = impl_->reader;
+  const auto& [header, stars] = impl_->contents;
+  if (star >= stars.size())
+    refuse(reader, "star", fmt::format("number {}", star), "the file has no such star",
            fmt::format("one of the {} in its table STARS", stars.size()));
   if (camera < 0 || camera > header.cameras)
     refuse(reader, "camera", fmt::format("{}", camera), "the file has no such camera",
@@ -107,18 +153,37 @@ LightCurve read_light_curve(const std::string& path, const std::string& id, int 
   const int unit = unit_named(reader, mean ? "COMBINED" : fmt::format("CAMERA{}", std::max(camera, 1)));
 
   LightCurve curve;
-  curve.star = *found;
-  const auto star = static_cast<std::size_t>(found - stars.begin());
+  curve.star = stars[star];
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(header.exposures, 0));
   std::vector<float> deviation(count);
   if (count > 0) reader.read_pixels(unit, static_cast<std::int64_t>(star) * header.exposures, deviation);
   curve.flags.assign(count, curve.star.flags);
-  add_sparse_flags(reader, star, camera, curve.flags);
+  const int first_camera = std::max(camera, 1);
+  const int last_camera = mean ? header.cameras : first_camera;
+  for (int c = first_camera; c <= last_camera; ++c) impl_->flags.add(c, star, curve.flags);
   for (std::size_t k = 0; k < count; ++k) {
     curve.time.push_back(mid_exposure(header, static_cast<std::int64_t>(k)));
     curve.flux.push_back(curve.star.reference * (1.0 + static_cast<double>(deviation[k])));
   }
   return curve;
+}
+
+LightCurve LightCurveReader::read(const std::string& id, int camera) const {
+  const std::vector<LightCurveStar>& stars = impl_->contents.stars;
+  const auto found = std::find_if(stars.begin(), stars.end(), [&id](const LightCurveStar& s) { return s.id == id; });
+  if (found == stars.end())
+    refuse(impl_->reader, "star", id, "the file has no such star",
+           fmt::format("one of the {} in its table STARS", stars.size()));
+  return read(static_cast<std::size_t>(found - stars.begin()), camera);
+}
+
+LightCurveContents read_light_curve_contents(const std::string& path) {
+  const FitsReader reader(path);
+  return {read_header(reader), read_stars(reader)};
+}
+
+LightCurve read_light_curve(const std::string& path, const std::string& id, int camera) {
+  return LightCurveReader(path).read(id, camera);
 }
 
 }  // namespace astroid

@@ -11,6 +11,7 @@
 
 #include "astroid/core/atomic_file.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/worker_pool.hpp"
 #include "astroid/reports/figure.hpp"
 
 namespace astroid {
@@ -119,7 +120,8 @@ bool have_gnuplot() {
   return run_gnuplot(temporary, {"--version"}, "/dev/null") == 0;
 }
 
-std::vector<std::string> draw_figures(const std::filesystem::path& folder, std::span<const Figure> figures) {
+std::vector<std::string> draw_figures(const std::filesystem::path& folder, std::span<const Figure> figures,
+                                      int threads) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw EnvironmentError(folder.string(), error.message());
@@ -133,11 +135,10 @@ std::vector<std::string> draw_figures(const std::filesystem::path& folder, std::
         "the figures were not drawn because gnuplot could not be started; their scripts and data are in report/figures "
         "(Debian: apt install gnuplot-nox, then `gnuplot NAME.gp` there)"};
   }
-  std::vector<std::string> problems;
-  for (const Figure& figure : figures) {
-    std::string problem = draw(folder, figure);
-    if (!problem.empty()) problems.push_back(std::move(problem));
-  }
+  std::vector<std::string> problems(figures.size());
+  parallel_for(threads, figures.size(),
+               [&](std::size_t /*worker*/, std::size_t i) { problems[i] = draw(folder, figures[i]); });
+  std::erase(problems, std::string());
   return problems;
 }
 

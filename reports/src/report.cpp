@@ -82,7 +82,7 @@ WrittenReport write_report(const fs::path& folder, const ReportInput& input) {
   make_folder(partial);
   write_text_file(partial / "columns.md", columns_markdown());
   const std::vector<Figure> figures = figures_of(input, noise, recovery);
-  written.problems = draw_figures(partial / "figures", figures);
+  written.problems = draw_figures(partial / "figures", figures, input.threads);
   PageContent content;
   content.input = &input;
   content.noise = noise;
@@ -92,7 +92,7 @@ WrittenReport write_report(const fs::path& folder, const ReportInput& input) {
   content.problems = written.problems;
   write_text_file(partial / "index.html", page(content));
   remove_folder(report);
-  rename_durably(partial, report);
+  rename_complete(partial, report);
 
   for (const auto& entry : fs::recursive_directory_iterator(report)) {
     if (entry.is_regular_file()) written.products.push_back(fs::relative(entry.path(), folder).generic_string());

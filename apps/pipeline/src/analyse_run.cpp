@@ -61,11 +61,16 @@ StreamResult read_stream(const std::filesystem::path& file, const Scene& scene,
     const auto star = fits.find_column(*flags, "STAR");
     const auto bits = fits.find_column(*flags, "FLAGS");
     if (star && bits) {
-      const std::vector<std::int64_t> stars_flagged = fits.read_integers(*flags, *star);
-      const std::vector<std::int64_t> flag = fits.read_integers(*flags, *bits);
-      for (std::size_t i = 0; i < flag.size(); ++i) {
-        const auto t = static_cast<std::size_t>(stars_flagged[i]);
-        if (t < result.flags.size()) result.flags[t] |= static_cast<std::uint32_t>(flag[i]);
+      const std::int64_t rows = units[static_cast<std::size_t>(*flags) - 1].rows;
+      constexpr std::int64_t kRowsAtOnce = 65536;
+      for (std::int64_t first = 0; first < rows; first += kRowsAtOnce) {
+        const std::int64_t count = std::min(kRowsAtOnce, rows - first);
+        const std::vector<std::int64_t> stars_flagged = fits.read_integers(*flags, *star, first, count);
+        const std::vector<std::int64_t> flag = fits.read_integers(*flags, *bits, first, count);
+        for (std::size_t i = 0; i < flag.size(); ++i) {
+          const auto t = static_cast<std::size_t>(stars_flagged[i]);
+          if (t < result.flags.size()) result.flags[t] |= static_cast<std::uint32_t>(flag[i]);
+        }
       }
     }
   }
@@ -131,7 +136,8 @@ std::vector<std::filesystem::path> export_stars(const std::filesystem::path& fol
                                 .history = {}};
   // All are read before the first is written: a wrong id leaves nothing behind.
   std::vector<LightCurve> curves;
-  for (const std::string& id : ids) curves.push_back(read_light_curve(light_curves.string(), id, 0));
+  const LightCurveReader reader(light_curves.string());
+  for (const std::string& id : ids) curves.push_back(reader.read(id, 0));
   create_folder(output);
   std::vector<std::filesystem::path> files;
   for (std::size_t i = 0; i < ids.size(); ++i) {

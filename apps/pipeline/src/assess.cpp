@@ -1,8 +1,11 @@
 #include <chrono>
+#include <future>
+#include <string>
 #include <utility>
 
 #include "astroid/core/atomic_file.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/product_folder.hpp"
 #include "astroid/pipeline/field.hpp"
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/run.hpp"
@@ -15,6 +18,8 @@ namespace astroid {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+constexpr const char* kLightCurves = "photometry/lightcurves.fits";
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
@@ -50,12 +55,21 @@ AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions
   const StreamResult stream = stream_exposures(
       run.scene, run.plan, estimators, {.threads = options.threads, .folder = working, .progress = options.progress});
   const Clock::time_point analysis_begin = Clock::now();
+  // The largest product by far is complete: its checksum is computed while the report is made.
+  const std::filesystem::path light_curves = working / kLightCurves;
+  std::future<std::string> checksum;
+  if (std::filesystem::exists(light_curves))
+    checksum =
+        std::async(options.threads == 1 ? std::launch::deferred : std::launch::async, sha256_of_file, light_curves);
   const ReportedRun reported = report_run(working, {.configuration = configuration,
                                                     .prepared = run,
                                                     .ground = ground,
                                                     .estimators = estimators,
                                                     .stream = stream,
-                                                    .light_curves = working / "photometry" / "lightcurves.fits"});
+                                                    .light_curves = light_curves,
+                                                    .threads = options.threads});
+  KnownChecksums checksums;
+  if (checksum.valid()) checksums[kLightCurves] = checksum.get();
   write_run_record(folder, {.command_line = options.command_line,
                             .threads = options.threads,
                             .scene = run.scene.get(),
@@ -63,7 +77,8 @@ AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions
                             .stream = &stream,
                             .analyse_seconds = seconds_since(analysis_begin),
                             .wall_seconds = seconds_since(begin),
-                            .warnings = reported.warnings});
+                            .warnings = reported.warnings,
+                            .checksums = checksums});
   const std::filesystem::path index = reported.index.lexically_relative(working);
   folder.commit();
   return {.folder = options.folder,

@@ -41,12 +41,18 @@ std::vector<FitsCard> exposure_cards(const Scene& scene, int camera, std::int64_
 }
 
 /// Cards of a frame in ADU.
-std::vector<FitsCard> frame_cards(const FrameHeader& header) {
-  return {{"BUNIT", "adu", "unit of the pixels"},
-          {"GAIN", header.gain.value(), "[e-/adu] gain"},
-          {"RDNOISE", header.readout_noise.value(), "[e-] readout noise, rms"},
-          {"BIAS", header.bias.value(), "[adu] bias"},
-          {"SATURATE", header.saturation.value(), "[adu] saturation level"}};
+std::vector<FitsCard> image_cards(const Scene& scene, const FrameHeader& header) {
+  std::vector<FitsCard> cards = exposure_cards(scene, header.camera, header.exposure);
+  cards.insert(cards.end(), {{"BUNIT", "adu", "unit of the pixels"},
+                             {"GAIN", header.gain.value(), "[e-/adu] gain"},
+                             {"RDNOISE", header.readout_noise.value(), "[e-] readout noise, rms"},
+                             {"BIAS", header.bias.value(), "[adu] bias"},
+                             {"SATURATE", header.saturation.value(), "[adu] saturation level"}});
+  return cards;
+}
+
+FitsNumber count_format(const Scene& scene) {
+  return scene.mission().ccd.adc_bits <= kSixteenBits ? FitsNumber::kUnsigned16 : FitsNumber::kInt32;
 }
 
 /// Where a sub-image lies: its WCS and the detector pixel of its first one.
@@ -72,38 +78,23 @@ std::pair<int, int> cube_size(const PixelLayout& layout) {
   return {nx, ny};
 }
 
-/// The planes of a layout as an image, or as a cube of windows with a table of where they lie.
-template <class Pixel, class Unit, class Convert>
-void write_plane(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber number, const Scene& scene,
-                 std::span<const FitsCard> cards, std::span<const std::string> history, Convert convert) {
-  using Stored = decltype(convert(Pixel{}));
+/// The regions of a plane as a cube of windows, with a table of where they lie.
+template <class Pixel, class Unit>
+void write_windows(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber number, const Scene& scene,
+                   std::span<const FitsCard> cards, std::span<const std::string> history) {
   const PixelLayout& layout = plane.layout();
-  if (!is_cube(layout)) {
-    const Rectangle& area = layout.regions()[0];
-    fits.begin_image(number, {area.nx, area.ny});
-    fits.cards(place_cards(scene, area));
-    fits.cards(cards);
-    for (const std::string& line : history) fits.history(line);
-    std::vector<Stored> row(static_cast<std::size_t>(area.nx));
-    for (int y = area.y0; y < area.y1(); ++y) {
-      std::ranges::transform(plane.view(0).row(y), row.begin(), convert);
-      fits.write_pixels(static_cast<std::int64_t>(y - area.y0) * area.nx, std::span<const Stored>(row));
-    }
-    return;
-  }
   const auto [nx, ny] = cube_size(layout);
   const auto count = static_cast<std::int64_t>(layout.regions().size());
   fits.begin_image(number, {nx, ny, count});
   fits.cards(cards);
   for (const std::string& line : history) fits.history(line);
-  std::vector<Stored> window;
+  std::vector<Pixel> window;
   for (std::size_t r = 0; r < layout.regions().size(); ++r) {
     const Rectangle& area = layout.regions()[r];
-    window.assign(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), Stored{});
+    window.assign(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), Pixel{});
     for (int y = area.y0; y < area.y1(); ++y)
-      std::ranges::transform(plane.view(r).row(y), window.begin() + static_cast<std::ptrdiff_t>(y - area.y0) * nx,
-                             convert);
-    fits.write_pixels(static_cast<std::int64_t>(r) * nx * ny, std::span<const Stored>(window));
+      std::ranges::copy(plane.view(r).row(y), window.begin() + static_cast<std::ptrdiff_t>(y - area.y0) * nx);
+    fits.write_pixels(static_cast<std::int64_t>(r) * nx * ny, std::span<const Pixel>(window));
   }
   fits.begin_table({{.name = "ID", .text_width = 32},
                     {.name = "X0", .number = FitsNumber::kInt32, .unit = "px"},
@@ -131,24 +122,38 @@ void write_plane(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber n
   fits.write_column(4, 0, std::span<const std::int32_t>(heights));
 }
 
+template <class Pixel, class Unit>
+void write_plane(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber number, const Scene& scene,
+                 std::span<const FitsCard> cards, std::span<const std::string> history) {
+  if (is_cube(plane.layout())) {
+    write_windows(fits, plane, number, scene, cards, history);
+    return;
+  }
+  const Rectangle& area = plane.layout().regions()[0];
+  fits.begin_image(number, {area.nx, area.ny});
+  fits.cards(place_cards(scene, area));
+  fits.cards(cards);
+  for (const std::string& line : history) fits.history(line);
+  fits.write_plane(plane.view(0));
+}
+
 /// The map that a step has just written, in its own unit.
 void write_step(FitsWriter& fits, const EffectSpec& effect, const ExposureState& state, const Scene& scene,
                 std::span<const std::string> history) {
   std::vector<FitsCard> cards = exposure_cards(scene, state.camera, state.exposure);
   cards.emplace_back("STEP", std::string(effect.name), "effect after which this map was written");
-  const auto as_double = [](double v) { return v; };
   if ((effect.writes & plane_bit::kDigital) != 0) {
     cards.emplace_back("BUNIT", "adu", "digitised");
-    write_plane(fits, state.frame.pixels, FitsNumber::kFloat32, scene, cards, history, [](float v) { return v; });
+    write_plane(fits, state.frame.pixels, FitsNumber::kFloat32, scene, cards, history);
   } else if ((effect.writes & plane_bit::kAnalog) != 0) {
     cards.emplace_back("BUNIT", "adu", "before digitising");
-    write_plane(fits, state.analog.whole(), FitsNumber::kFloat64, scene, cards, history, as_double);
+    write_plane(fits, state.analog.whole(), FitsNumber::kFloat64, scene, cards, history);
   } else if ((effect.writes & plane_bit::kSampled) != 0) {
     cards.emplace_back("BUNIT", "electron", "drawn electrons");
-    write_plane(fits, state.sampled.whole(), FitsNumber::kFloat64, scene, cards, history, as_double);
+    write_plane(fits, state.sampled.whole(), FitsNumber::kFloat64, scene, cards, history);
   } else {
     cards.emplace_back("BUNIT", "electron", "expected electrons");
-    write_plane(fits, state.expected.whole(), FitsNumber::kFloat64, scene, cards, history, as_double);
+    write_plane(fits, state.expected.whole(), FitsNumber::kFloat64, scene, cards, history);
   }
 }
 
@@ -177,7 +182,14 @@ Image<float, unit::Adu> largest_region(const Frame& frame) {
 }
 
 ImageFiles::ImageFiles(const Scene& scene, const Plan& plan, std::filesystem::path folder)
-    : scene_(scene), history_(history_of(plan, scene)), folder_(std::move(folder)) {}
+    : scene_(scene), history_(history_of(plan, scene)), folder_(std::move(folder)) {
+  const PixelLayout& layout = *scene.layout();
+  if (folder_.empty() || is_cube(layout)) return;
+  const Rectangle& area = layout.regions()[0];
+  std::vector<FitsCard> cards = place_cards(scene, area);
+  for (FitsCard& card : image_cards(scene, {})) cards.push_back(std::move(card));
+  series_.emplace(count_format(scene), area.nx, area.ny, cards, history_);
+}
 
 bool ImageFiles::writes(int /*camera*/, std::int64_t exposure) const {
   if (folder_.empty()) return false;
@@ -203,17 +215,16 @@ bool ImageFiles::dumps(int /*camera*/, std::int64_t exposure) const {
 void ImageFiles::write(const Frame& frame) const {
   const std::filesystem::path folder = folder_ / "images";
   create_folder(folder);
-  FitsWriter fits(folder / (file_name(frame.header.camera, frame.header.exposure) + ".fits"));
-  std::vector<FitsCard> cards = exposure_cards(scene_, frame.header.camera, frame.header.exposure);
-  for (FitsCard& card : frame_cards(frame.header)) cards.push_back(std::move(card));
-  if (scene_.mission().ccd.adc_bits <= kSixteenBits) {
-    write_plane(fits, frame.pixels, FitsNumber::kUnsigned16, scene_, cards, history_,
-                [](float v) { return static_cast<std::uint16_t>(v); });
-  } else {
-    write_plane(fits, frame.pixels, FitsNumber::kInt32, scene_, cards, history_,
-                [](float v) { return static_cast<std::int32_t>(v); });
+  const std::filesystem::path file = folder / (file_name(frame.header.camera, frame.header.exposure) + ".fits");
+  const std::vector<FitsCard> cards = image_cards(scene_, frame.header);
+  if (series_) {
+    const std::span<const float> counts(frame.pixels.view(0).data(), frame.pixels.size());
+    series_->write(file, counts, cards, Durability::kWithFolder);
+    return;
   }
-  fits.commit();
+  FitsWriter fits(file);
+  write_windows(fits, frame.pixels, count_format(scene_), scene_, cards, history_);
+  fits.commit(Durability::kWithFolder);
 }
 
 StepObserver ImageFiles::step_writer(int camera, std::int64_t exposure) const {
@@ -224,7 +235,7 @@ StepObserver ImageFiles::step_writer(int camera, std::int64_t exposure) const {
     if (effect.level == EffectLevel::kPointing) return;  // no map changes
     FitsWriter fits(folder / fmt::format("{}_{:02}_{}.fits", stem, ++number, effect.name));
     write_step(fits, effect, state, scene_, history_);
-    fits.commit();
+    fits.commit(Durability::kWithFolder);
   };
 }
 

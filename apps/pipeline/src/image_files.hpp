@@ -3,9 +3,11 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "astroid/core/fits_image_series.hpp"
 #include "astroid/core/frame.hpp"
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
@@ -35,6 +37,7 @@ class ImageFiles {
   const Scene& scene_;
   std::vector<std::string> history_;
   std::filesystem::path folder_;
+  std::optional<FitsImageSeries> series_{};  // unless images are cubes of windows
 };
 
 /// The plan's lines for HISTORY cards: without its predicted times, so that products do not change with the machine.

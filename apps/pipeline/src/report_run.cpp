@@ -73,7 +73,7 @@ void write_mean_sources(const std::filesystem::path& path, const MeasuredRun& ru
 
 std::vector<ContaminationRow> contamination_rows(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
   const auto neighbours = strongest_contaminants(run.estimators, *run.prepared.scene->layout(), run.ground.model,
-                                                 kNeighbourReach, kListedNeighbours);
+                                                 kNeighbourReach, kListedNeighbours, run.threads);
   std::vector<ContaminationRow> rows;
   rows.reserve(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t)
@@ -107,11 +107,12 @@ std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path&
     if (is_clean(targets[t])) clean.push_back(t);
   if (clean.empty() || !std::filesystem::exists(file)) return {};
   std::ranges::stable_sort(clean, {}, [&](std::size_t t) { return targets[t].mag; });
+  const LightCurveReader reader(file.string());
   std::vector<ExampleLightCurve> examples;
   const std::size_t count = std::min(kShownLightCurves, clean.size());
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t t = clean[count == 1 ? 0 : i * (clean.size() - 1) / (count - 1)];
-    const LightCurve curve = read_light_curve(file.string(), targets[t].id, 0);
+    const LightCurve curve = reader.read(t, 0);
     ExampleLightCurve example{.id = targets[t].id, .mag = targets[t].mag, .hours = {}, .deviation = {}};
     for (std::size_t k = 0; k < curve.time.size(); ++k) {
       example.hours.push_back(curve.time[k] / kSecondsPerHour);
@@ -179,6 +180,7 @@ ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& r
         fmt::format("Exposure 0 of camera 1, {} x {} px", run.stream.first_frame.nx(), run.stream.first_frame.ny());
   }
   input.light_curves = example_light_curves(run.light_curves, targets, run.stream.reference);
+  input.threads = run.threads;
   const WrittenReport written = write_report(folder, input);
   reported.index = written.index;
   reported.verdict = input.verdict;

@@ -20,6 +20,7 @@ struct MeasuredRun {
   const std::vector<StarEstimator>& estimators;
   const StreamResult& stream;
   std::filesystem::path light_curves;  ///< their file; the report shows some, if it is there
+  int threads = 0;                     ///< < 1: as many as the process may run; products do not depend on it
 };
 
 struct ReportedRun {

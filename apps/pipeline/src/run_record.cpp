@@ -133,7 +133,7 @@ void write_run_record(const ProductFolder& folder, const RunRecord& record) {
   }
   json["peak_memory_bytes"] = static_cast<std::int64_t>(peak_memory_bytes());
   json["warnings"] = record.warnings;
-  json["products"] = product_list(folder.products());
+  json["products"] = product_list(folder.products(record.checksums));
   write_text_file(folder.file("run.json"), json.dump(2) + "\n");
 }
 

@@ -123,12 +123,20 @@ TEST_F(Commands, FieldMakesAFieldAndExtendsItAndARunUsesIt) {
 }
 
 TEST_F(Commands, InitWritesAPresetThatIsValid) {
-  EXPECT_THAT(said({"init", "plato"}), HasSubstr("astroid assess plato.xml"));
-  EXPECT_EQ(test::read_file(folder_.path() / "plato.xml"),
-            test::read_file(test::source_dir() / "apps/missions/plato.xml"));
-  EXPECT_THAT(said({"validate", "plato.xml"}), HasSubstr("plato.xml: valid"));
-  EXPECT_THAT(said({"validate", "plato"}), HasSubstr("valid"));
+  for (const std::string name : {"plato", "plato-week"}) {
+    const std::string file = name + ".xml";
+    EXPECT_THAT(said({"init", name}), HasSubstr("astroid assess " + file));
+    EXPECT_EQ(test::read_file(folder_.path() / file), test::read_file(test::source_dir() / "apps/missions" / file));
+    EXPECT_THAT(said({"validate", file}), HasSubstr(file + ": valid"));
+    EXPECT_THAT(said({"validate", name}), HasSubstr("valid"));
+  }
   EXPECT_THAT(said({"validate", "small.xml"}), HasSubstr("valid"));
+}
+
+TEST_F(Commands, EveryStarOfTheWeekIsATarget) {
+  EXPECT_THAT(said({"plan", "plato-week"}),
+              AllOf(HasSubstr("480 x 480 px"), HasSubstr("32240 on or next to the detector, 32240 of them targets"),
+                    HasSubstr("for 24192 exposures")));
 }
 
 TEST_F(Commands, ExplainTellsUnitRangeAndDefault) {

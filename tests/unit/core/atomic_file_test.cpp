@@ -27,6 +27,25 @@ TEST(AtomicFile, AppearsOnlyWhenCommitted) {
   EXPECT_FALSE(std::filesystem::exists(partial_path(path)));
 }
 
+TEST(AtomicFile, KeepsTheOrderOfSmallAndLargeParts) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "product.txt";
+  std::string expected;
+  AtomicFile file(path);
+  for (const std::size_t size : {1U, 65535U, 3U, 65536U, 70000U, 2U, 60000U, 60000U}) {
+    const std::string part(size, static_cast<char>('a' + expected.size() % 26));
+    file.write(part);
+    expected += part;
+  }
+  file.overwrite(65530, "0123456789");
+  expected.replace(65530, 10, "0123456789");
+  file.write("end");
+  EXPECT_THROW(file.overwrite(expected.size(), "late!"), BugError) << "only what is written can be replaced";
+  file.commit(Durability::kWithFolder);
+  EXPECT_EQ(read_text_file(path), expected + "end");
+  EXPECT_FALSE(std::filesystem::exists(partial_path(path)));
+}
+
 TEST(AtomicFile, LeavesNothingBehindWithoutCommit) {
   const test::TemporaryFolder folder;
   const auto path = folder.write("product.txt", "old");

@@ -296,6 +296,9 @@ TEST(Fits, TablesReadBack) {
   EXPECT_EQ(magnitudes[4], 5.0);
   EXPECT_THAT(reader.read_numbers(table, 2, 1, 2), ElementsAre(2.5, 3.5));
   EXPECT_EQ(reader.read_integers(table, 4)[0], 5853498713190525696);
+  EXPECT_THAT(reader.read_integers(table, 3, 1, 2), ElementsAre(-2, 3));
+  EXPECT_THROW((void)reader.read_integers(table, 3, 4, 2), InputError);
+  EXPECT_THROW((void)reader.read_integers(table, 3, -1, 2), InputError);
   EXPECT_EQ(reader.read_texts(table, 4)[0], "5853498713190525696");
   EXPECT_THROW((void)reader.read_integers(table, 1), InputError);
   EXPECT_THROW((void)reader.read_numbers(table, 0), InputError);

@@ -155,6 +155,10 @@ TEST(ProductFolder, ListsItsProductsWithChecksums) {
   EXPECT_EQ(products[1].path, "truth/stars.csv");
   EXPECT_EQ(products[1].bytes, 3U);
   EXPECT_EQ(products[1].sha256, sha256("abc"));
+  const auto with_known = folder.products({{"plan.txt", "known"}, {"absent.txt", "ignored"}});
+  ASSERT_EQ(with_known.size(), 2U);
+  EXPECT_EQ(with_known[0].sha256, "known");
+  EXPECT_EQ(with_known[1].sha256, sha256("abc"));
 }
 
 TEST(ProductFolder, NamesPathAndCauseWhereItMayNotWrite) {

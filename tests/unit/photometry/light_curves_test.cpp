@@ -117,6 +117,44 @@ TEST(LightCurves, AverageTheCamerasThatMeasured) {
   EXPECT_EQ(read_light_curve(path, "Gaia DR3 1", 3).flags[1], 2U);
 }
 
+TEST(LightCurves, FindTheFlagsOfAStarAmongMany) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "lightcurves.fits").string();
+  constexpr int kCameras = 3;
+  constexpr std::int64_t kExposures = 40;
+  LightCurveWriter writer(path, header_of(kExposures, kCameras), three_stars());
+  for (int camera = 1; camera <= kCameras; ++camera) write(writer, camera, 0, kExposures);
+  const auto flag = [](int camera, std::size_t star, std::int64_t k) -> std::uint32_t {
+    if (star == 1 && camera == 2) return 0;  // this star has none in this camera
+    return (k * 7 + camera * 5 + static_cast<std::int64_t>(star)) % 3 == 0 ? 1U << static_cast<unsigned>(camera) : 0U;
+  };
+  std::vector<LightCurveFlag> flags;
+  for (std::int64_t k = 0; k < kExposures; ++k)
+    for (std::size_t star = 0; star < 3; ++star)
+      for (int camera = 1; camera <= kCameras; ++camera)
+        if (flag(camera, star, k) != 0)
+          flags.push_back(
+              {static_cast<std::uint32_t>(camera), static_cast<std::uint32_t>(star), k, flag(camera, star, k)});
+  writer.add_flags(flags);
+  writer.commit();
+  const LightCurveReader reader(path);
+  for (std::size_t star = 0; star < 3; ++star) {
+    const std::uint32_t always = reader.contents().stars[star].flags;
+    const LightCurve all = reader.read(star, 0);
+    for (std::int64_t k = 0; k < kExposures; ++k) {
+      const auto i = static_cast<std::size_t>(k);
+      std::uint32_t together = always;
+      for (int camera = 1; camera <= kCameras; ++camera) {
+        EXPECT_EQ(reader.read(star, camera).flags[i], always | flag(camera, star, k));
+        together |= flag(camera, star, k);
+      }
+      EXPECT_EQ(all.flags[i], together);
+    }
+  }
+  EXPECT_THROW((void)reader.read(3, 1), InputError);
+  EXPECT_THROW((void)reader.read("x", 4), InputError);
+}
+
 TEST(LightCurves, LeaveNothingBehindWithoutCommit) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "lightcurves.fits").string();

@@ -32,10 +32,11 @@ struct ContaminationRow {
 ///
 /// @param reach  neighbours farther than this in x or y are not considered, px.
 /// @param count  at most so many per target; those without any light in the aperture are left out.
+/// @param threads  the result does not depend on it; < 1: as many as the process may run.
 /// @returns one list per estimator, in their order.
 std::vector<std::vector<Contaminant>> strongest_contaminants(std::span<const StarEstimator> estimators,
                                                              const PixelLayout& layout, const GroundModel& model,
-                                                             double reach, std::size_t count);
+                                                             double reach, std::size_t count, int threads = 1);
 
 /// A series of equal transits or eclipses.
 struct TransitSeries {

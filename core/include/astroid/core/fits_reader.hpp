@@ -103,6 +103,8 @@ class FitsReader {
                                                  std::int64_t count) const;
   [[nodiscard]] std::vector<double> read_numbers(int unit, std::size_t column) const;
   /// Whole numbers; missing ones the smallest std::int64_t. @throws InputError when the column holds others.
+  [[nodiscard]] std::vector<std::int64_t> read_integers(int unit, std::size_t column, std::int64_t first_row,
+                                                        std::int64_t count) const;
   [[nodiscard]] std::vector<std::int64_t> read_integers(int unit, std::size_t column) const;
   /// One text a row, without the blanks at its end; numbers in the shortest form that reads back.
   [[nodiscard]] std::vector<std::string> read_texts(int unit, std::size_t column) const;

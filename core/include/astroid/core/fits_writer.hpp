@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "astroid/core/atomic_file.hpp"
 #include "astroid/core/fits_card.hpp"
 #include "astroid/core/image.hpp"
 
@@ -106,7 +107,7 @@ class FitsWriter {
   void write_column(std::size_t column, std::int64_t first_row, std::span<const std::string> values);
 
   /// Completes all units and gives the file its name. Nothing can be written afterwards.
-  void commit();
+  void commit(Durability durability = Durability::kAtOnce);
 
  private:
   struct State;

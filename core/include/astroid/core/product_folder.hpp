@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -30,13 +31,17 @@ struct Product {
   std::string sha256;
 };
 
-/// Every complete file of a folder but run.json, in the order of their names, with its checksum.
-/// @throws EnvironmentError(path, cause)
-[[nodiscard]] std::vector<Product> products_in(const std::filesystem::path& folder);
+/// Checksums that are known, by the path relative to the folder.
+using KnownChecksums = std::map<std::string, std::string>;
 
-/// The folder that `-o DIR` names. A run writes in DIR.partial; commit() renames it to DIR. A run that ends otherwise
-/// leaves DIR.partial (nothing if it is empty: neither it nor the folders above that were made for it). A lock keeps
-/// two runs from writing the same folder.
+/// Every complete file of a folder but run.json, in the order of their names, with its checksum; `known` ones are
+/// taken as they are. @throws EnvironmentError(path, cause)
+[[nodiscard]] std::vector<Product> products_in(const std::filesystem::path& folder, const KnownChecksums& known = {});
+
+/// The folder that `-o DIR` names. A run writes in DIR.partial; commit() synchronises what is in it, in one go, and
+/// renames it to DIR: so products need not be synchronised one by one (Durability::kWithFolder). A run that ends
+/// otherwise leaves DIR.partial (nothing if it is empty: neither it nor the folders above that were made for it). A
+/// lock keeps two runs from writing the same folder.
 /// @throws EnvironmentError(path, cause) when the disk or permissions fail, from every member function.
 class ProductFolder {
  public:
@@ -61,9 +66,10 @@ class ProductFolder {
   [[nodiscard]] std::filesystem::path file(const std::filesystem::path& relative) const;
 
   /// Every file so far but run.json, in the order of their names, with its checksum.
-  [[nodiscard]] std::vector<Product> products() const;
+  [[nodiscard]] std::vector<Product> products(const KnownChecksums& known = {}) const;
 
-  /// Gives the folder its name. Files left over from products that were never completed are removed.
+  /// Synchronises the products and gives the folder its name. Files left over from products that were never completed
+  /// are removed.
   void commit();
 
  private:

@@ -94,8 +94,33 @@ struct LightCurve {
   std::vector<double> flux;          ///< e- per exposure; NaN where flagged unmeasurable
   std::vector<std::uint32_t> flags;  ///< with those that the star always has
 };
-/// @param camera  1 … cameras; 0: the mean of all cameras, with the flags of all.
-/// @throws InputError when the file has no such star or camera or is not a light-curve file.
+
+/// Reads light curves one after the other: of a file of gigabytes only what belongs to the star asked for.
+/// @throws InputError when it is not a light-curve file; EnvironmentError when it cannot be read.
+/// @thread one thread at a time
+class LightCurveReader {
+ public:
+  explicit LightCurveReader(const std::string& path);
+  ~LightCurveReader();
+  LightCurveReader(const LightCurveReader&) = delete;
+  LightCurveReader& operator=(const LightCurveReader&) = delete;
+  LightCurveReader(LightCurveReader&&) = delete;
+  LightCurveReader& operator=(LightCurveReader&&) = delete;
+
+  [[nodiscard]] const LightCurveContents& contents() const;
+  /// @param star    index in contents().stars.
+  /// @param camera  1 … cameras; 0: the mean of all cameras, with the flags of all.
+  /// @throws InputError when the file has no such star or camera.
+  [[nodiscard]] LightCurve read(std::size_t star, int camera) const;
+  /// The same for the star of that id.
+  [[nodiscard]] LightCurve read(const std::string& id, int camera) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// One light curve of a file, by LightCurveReader.
 LightCurve read_light_curve(const std::string& path, const std::string& id, int camera);
 
 /// Writes one star as a file that lightkurve opens (no CREATOR card, TELESCOP = 'ASTROID', TIMESYS TDB): columns TIME,

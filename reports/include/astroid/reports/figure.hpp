@@ -34,17 +34,19 @@ inline constexpr const char* kPhoton = "#5fa8d3";
 inline constexpr const char* kBackground = "#8ab17d";
 inline constexpr const char* kReadout = "#8e7dbe";
 inline constexpr const char* kQuantisation = "#b8b8b8";
-inline constexpr const char* kJitter = "#d4a373";
+inline constexpr const char* kJitter = "#c76b98";
 }  // namespace palette
 
 /// The gnuplot script of a figure: complete, run as `gnuplot name.gp` in its folder.
 std::string figure_script(const Figure& figure);
 
-/// Writes the data and the scripts into `folder` and draws each figure as PNG, SVG and PDF.
+/// Writes the data and the scripts into `folder` and draws each figure as PNG, SVG and PDF, `threads` at a time
+/// (< 1: as many as the process may run).
 ///
 /// @returns what went wrong, in words for the report; empty when every figure was drawn. Without gnuplot, one entry.
 /// @throws EnvironmentError when data or scripts cannot be written.
-std::vector<std::string> draw_figures(const std::filesystem::path& folder, std::span<const Figure> figures);
+std::vector<std::string> draw_figures(const std::filesystem::path& folder, std::span<const Figure> figures,
+                                      int threads = 0);
 
 /// True if gnuplot can be started.
 bool have_gnuplot();

@@ -48,6 +48,7 @@ struct ReportInput {
   std::optional<ImageView<const float, unit::Adu>> image;  ///< one exposure
   std::string image_caption;
   std::vector<ExampleLightCurve> light_curves;  ///< the first six are shown
+  int threads = 0;                              ///< figures drawn at a time; < 1: as many as the process may run
 };
 
 struct WrittenReport {

@@ -19,6 +19,10 @@ inline std::filesystem::path plato_preset() {
   return source_dir() / "apps/missions/plato.xml";
 }
 
+inline std::filesystem::path week_preset() {
+  return source_dir() / "apps/missions/plato-week.xml";
+}
+
 /// A data folder with (empty) files where the PLATO preset looks for its catalogues, and one `stars.csv`.
 class FolderWithCatalogue {
  public:

@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
+#include <string>
+#include <vector>
 
 #include "astroid/core/configuration.hpp"
 #include "astroid/core/error.hpp"
@@ -55,16 +58,56 @@ TEST(PlatoPreset, FindsTheCatalogueShippedInTheSourceTree) {
   EXPECT_EQ(resolved.mission.field.catalogue, (test::source_dir() / test::kPlatoCatalogue).string());
 }
 
-TEST(PlatoPreset, NamesTheLineOfEveryParameterItGives) {
-  const FolderWithCatalogue data;
-  const auto resolved = read_configuration(plato_preset(), {.overrides = {}, .data_folders = {data.path()}});
+// Gutierrez-Canales et al., A&A 707, A2: 24,192 exposures of 25 s of 2 x 2 deg, photometry of 32,240 stars to V = 15.
+TEST(WeekPreset, IsThePapersWeekWithTheCameraOfPlato) {
+  const ConfigurationSurroundings shipped{.overrides = {}, .data_folders = {test::source_dir()}};
+  const Mission week = read_configuration(test::week_preset(), shipped).mission;
+  EXPECT_EQ(week.simulation.exposures, 24192);
+  EXPECT_EQ(static_cast<double>(week.simulation.exposures) * week.simulation.cycle.value(), 7.0 * 86400.0);
+  EXPECT_FALSE(week.ccd.has_sub_field);
+  EXPECT_EQ(week.ccd.columns * week.ccd.pixel_scale.value(), 2.0 * 3600.0);
+  EXPECT_EQ(week.ccd.rows, week.ccd.columns);
+  EXPECT_EQ(week.photometry.method, PhotometryMethod::kMask);
+  EXPECT_EQ(week.photometry.background, BackgroundMethod::kLocal);
+  EXPECT_EQ(week.photometry.target_limit, Magnitude(15.0));
+  EXPECT_EQ(week.output.images, ImageOutput::kNone);
+  EXPECT_EQ(week.output.light_curves, LightCurveOutput::kAll);
+
+  const Mission plato = read_configuration(plato_preset(), shipped).mission;
+  EXPECT_EQ(week.satellite.jitter.model, plato.satellite.jitter.model);
+  EXPECT_EQ(week.satellite.jitter.yaw, plato.satellite.jitter.yaw);
+  EXPECT_EQ(week.telescope.zero_point, plato.telescope.zero_point);
+  EXPECT_EQ(week.telescope.cameras, plato.telescope.cameras);
+  EXPECT_EQ(week.psf.sigma, plato.psf.sigma);
+  EXPECT_EQ(week.field.sky_background, plato.field.sky_background);
+  EXPECT_EQ(week.ccd.full_well, plato.ccd.full_well);
+  EXPECT_EQ(week.ccd.dark_current, plato.ccd.dark_current);
+  EXPECT_EQ(week.ccd.dsnu, plato.ccd.dsnu);
+  EXPECT_EQ(week.ccd.prnu, plato.ccd.prnu);
+  EXPECT_EQ(week.ccd.readout_noise, plato.ccd.readout_noise);
+  EXPECT_EQ(week.ccd.gain, plato.ccd.gain);
+  EXPECT_EQ(week.ccd.bias, plato.ccd.bias);
+  EXPECT_EQ(week.ccd.adc_bits, plato.ccd.adc_bits);
+}
+
+class Preset : public testing::TestWithParam<std::filesystem::path> {};
+
+TEST_P(Preset, FindsItsCataloguesInTheSourceTree) {
+  const auto resolved = read_configuration(GetParam(), {.overrides = {}, .data_folders = {test::source_dir()}});
+  for (const std::string& catalogue : {resolved.mission.field.catalogue, resolved.mission.field.background_catalogue}) {
+    EXPECT_TRUE(catalogue.empty() || std::filesystem::is_regular_file(catalogue)) << catalogue;
+  }
+}
+
+TEST_P(Preset, NamesTheLineOfEveryParameterItGives) {
+  const auto resolved = read_configuration(GetParam(), {.overrides = {}, .data_folders = {test::source_dir()}});
   std::vector<std::string> lines;
-  std::ifstream stream(plato_preset());
+  std::ifstream stream(GetParam());
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
   int from_file = 0;
   for (const ResolvedParameter& parameter : resolved.parameters) {
     if (parameter.origin == "default") continue;
-    const std::string prefix = plato_preset().string() + ":";
+    const std::string prefix = GetParam().string() + ":";
     ASSERT_TRUE(parameter.origin.starts_with(prefix)) << parameter.path << " from " << parameter.origin;
     const auto line = static_cast<std::size_t>(std::stoul(parameter.origin.substr(prefix.size())));
     ASSERT_LE(line, lines.size());
@@ -74,6 +117,8 @@ TEST(PlatoPreset, NamesTheLineOfEveryParameterItGives) {
   }
   EXPECT_GE(from_file, 40);
 }
+
+INSTANTIATE_TEST_SUITE_P(Shipped, Preset, testing::Values(plato_preset(), test::week_preset()));
 
 }  // namespace
 }  // namespace astroid

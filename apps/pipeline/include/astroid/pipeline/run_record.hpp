@@ -19,6 +19,7 @@ struct RunRecord {
   double analyse_seconds = 0.0;
   double wall_seconds = 0.0;
   std::vector<std::string> warnings;
+  KnownChecksums checksums{};  ///< of products, where they were computed before
 };
 
 /// Writes run.json into the folder, with a checksum of every other product in it. @throws EnvironmentError
