@@ -1,0 +1,164 @@
+#include "batch_flux.hpp"
+
+#include <algorithm>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "batch_flux.cpp"  // NOLINT(bugprone-macro-parentheses): the name of this file
+#include <hwy/foreach_target.h>              // IWYU pragma: keep: compiles this file once for each instruction set
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace astroid::detail::HWY_NAMESPACE {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// As in EstimatorSet::apply(): four running sums, and the order in which they meet.
+constexpr std::size_t kSums = 4;
+// Vectors of frames that are summed side by side, so that a pixel's index is looked up once for both.
+constexpr std::size_t kSideBySide = 2;
+
+// Sums of kVectors neighbouring vectors of frames, the first of which begins at `counts`.
+template <std::size_t kVectors, class D, class Weigh>
+HWY_INLINE void sum_terms(D d, std::span<const std::uint32_t> pixel, const InterleavedFrames& frames,
+                          const float* counts, const Weigh& weigh, hn::Vec<D>* sum) {
+  const hn::Rebind<float, D> narrow;
+  const std::size_t lanes = hn::Lanes(d);
+  const std::size_t last_place = frames.pixels - 1;
+  const std::size_t stride = frames.stride;
+  hn::Vec<D> sums[kSums][kVectors];
+  for (auto& row : sums)
+    for (auto& vector : row) vector = hn::Zero(d);
+  const auto add = [&](std::size_t i, hn::Vec<D>* row) HWY_ATTR {
+    const float* place = counts + (pixel[i] & last_place) * stride;
+    for (std::size_t v = 0; v < kVectors; ++v)
+      row[v] = hn::Add(row[v], weigh(i, hn::PromoteTo(d, hn::LoadU(narrow, place + v * lanes))));
+  };
+  std::size_t i = 0;
+  for (; i + kSums <= pixel.size(); i += kSums)
+    for (std::size_t s = 0; s < kSums; ++s) add(i + s, sums[s]);
+  if (i < pixel.size()) add(i, sums[0]);
+  if (i + 1 < pixel.size()) add(i + 1, sums[1]);
+  if (i + 2 < pixel.size()) add(i + 2, sums[2]);
+  for (std::size_t v = 0; v < kVectors; ++v)
+    sum[v] = hn::Add(hn::Add(sums[0][v], sums[1][v]), hn::Add(sums[2][v], sums[3][v]));
+}
+
+// The fluxes of kVectors vectors of frames from frame `first` on.
+template <std::size_t kVectors, class D>
+HWY_INLINE bool flux_of(D d, const InterleavedFrames& frames, const BatchTerms& terms, std::size_t first,
+                        double* flux) {
+  const float* counts = frames.counts + first;
+  hn::Vec<D> level[kVectors];
+  hn::Vec<D> sum[kVectors];
+  if (terms.background.empty()) {
+    for (auto& vector : level) vector = hn::Set(d, terms.bias);
+  } else {
+    const auto plain = [](std::size_t /*term*/, hn::Vec<D> value) HWY_ATTR { return value; };
+    sum_terms<kVectors>(d, terms.background, frames, counts, plain, level);
+    const auto count = hn::Set(d, static_cast<double>(terms.background.size()));
+    for (auto& vector : level) vector = hn::Div(vector, count);
+  }
+  const auto weighted = [d, &terms](std::size_t term, hn::Vec<D> value)
+                            HWY_ATTR { return hn::Mul(hn::Set(d, static_cast<double>(terms.weight[term])), value); };
+  sum_terms<kVectors>(d, terms.aperture, frames, counts, weighted, sum);
+  const auto gain = hn::Set(d, terms.gain);
+  const auto weight_sum = hn::Set(d, terms.weight_sum);
+  const auto offset = hn::Set(d, terms.offset);
+  auto finite = hn::IsFinite(gain);
+  for (std::size_t v = 0; v < kVectors; ++v) {
+    const auto result = hn::Sub(hn::Mul(gain, hn::Sub(sum[v], hn::Mul(level[v], weight_sum))), offset);
+    finite = hn::And(finite, hn::IsFinite(result));
+    hn::StoreU(result, d, flux + first + v * hn::Lanes(d));
+  }
+  return hn::AllTrue(d, finite);
+}
+
+template <std::size_t kStride>
+HWY_INLINE bool flux_of_all(const InterleavedFrames& frames, const BatchTerms& terms, double* flux) {
+  const hn::CappedTag<double, kStride> d;
+  constexpr std::size_t kLanes = hn::MaxLanes(d);
+  constexpr std::size_t kVectors = std::min(kSideBySide, kStride / kLanes);
+  bool finite = true;
+  for (std::size_t first = 0; first < kStride; first += kVectors * kLanes)
+    finite = flux_of<kVectors>(d, frames, terms, first, flux) && finite;
+  return finite;
+}
+
+bool batch_flux(const InterleavedFrames& frames, const BatchTerms& terms, double* flux) {
+  switch (frames.stride) {
+    case 4:
+      return flux_of_all<4>(frames, terms, flux);
+    case 8:
+      return flux_of_all<8>(frames, terms, flux);
+    default:
+      return flux_of_all<16>(frames, terms, flux);
+  }
+}
+
+void interleave(std::span<const float* const> frames, std::size_t first, std::size_t last,
+                const InterleavedFrames& into) {
+  constexpr std::size_t kTile = 4;  // pixels and frames that change places among four registers
+  // As many pixels as fill a cache line of a frame: it is read whole before the next frames' lines are.
+  constexpr std::size_t kLine = 16;
+  const hn::FixedTag<float, kTile> d;
+  const std::size_t last_place = into.pixels - 1;
+  const auto counts_of = [&](std::size_t frame) { return frames[frame < frames.size() ? frame : 0]; };
+  for (std::size_t line = first; line < last; line += kLine) {
+    const std::size_t end = std::min(line + kLine, last);
+    for (std::size_t frame = 0; frame < into.stride; frame += kTile) {
+      std::size_t p = line;
+      for (; p + kTile <= end && (p & last_place) + kTile <= into.pixels; p += kTile) {
+        const auto a = hn::LoadU(d, counts_of(frame) + p);
+        const auto b = hn::LoadU(d, counts_of(frame + 1) + p);
+        const auto c = hn::LoadU(d, counts_of(frame + 2) + p);
+        const auto e = hn::LoadU(d, counts_of(frame + 3) + p);
+        const auto ab_low = hn::InterleaveLower(d, a, b);
+        const auto ce_low = hn::InterleaveLower(d, c, e);
+        const auto ab_high = hn::InterleaveUpper(d, a, b);
+        const auto ce_high = hn::InterleaveUpper(d, c, e);
+        float* place = into.counts + (p & last_place) * into.stride + frame;
+        hn::Store(hn::ConcatLowerLower(d, ce_low, ab_low), d, place);
+        hn::Store(hn::ConcatUpperUpper(d, ce_low, ab_low), d, place + into.stride);
+        hn::Store(hn::ConcatLowerLower(d, ce_high, ab_high), d, place + 2 * into.stride);
+        hn::Store(hn::ConcatUpperUpper(d, ce_high, ab_high), d, place + 3 * into.stride);
+      }
+      for (; p < end; ++p)
+        for (std::size_t f = frame; f < frame + kTile; ++f)
+          into.counts[(p & last_place) * into.stride + f] = counts_of(f)[p];
+    }
+  }
+}
+
+}  // namespace astroid::detail::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace astroid::detail {
+
+HWY_EXPORT(batch_flux);
+HWY_EXPORT(interleave);
+
+bool batch_flux(const InterleavedFrames& frames, const BatchTerms& terms, double* flux) {
+  return HWY_DYNAMIC_DISPATCH(batch_flux)(frames, terms, flux);
+}
+
+void interleave(std::span<const float* const> frames, std::size_t first, std::size_t last,
+                const InterleavedFrames& into) {
+  HWY_DYNAMIC_DISPATCH(interleave)(frames, first, last, into);
+}
+
+std::uint8_t any_flags(std::span<const std::uint8_t* const> frames, std::span<std::uint8_t> any) {
+  constexpr std::size_t kPiece = 4096;  // pixels, so that the result stays in the nearest cache
+  std::uint8_t all = 0;
+  for (std::size_t first = 0; first < any.size(); first += kPiece) {
+    const std::span<std::uint8_t> piece = any.subspan(first, std::min(kPiece, any.size() - first));
+    std::copy_n(frames.front() + first, piece.size(), piece.begin());
+    for (const std::uint8_t* flags : frames.subspan(1))
+      for (std::size_t p = 0; p < piece.size(); ++p) piece[p] = static_cast<std::uint8_t>(piece[p] | flags[first + p]);
+    for (const std::uint8_t flag : piece) all = static_cast<std::uint8_t>(all | flag);
+  }
+  return all;
+}
+
+}  // namespace astroid::detail
+#endif  // HWY_ONCE
