@@ -98,8 +98,8 @@ bool batch_flux(const InterleavedFrames& frames, const BatchTerms& terms, double
 void interleave(std::span<const float* const> frames, std::size_t first, std::size_t last,
                 const InterleavedFrames& into) {
   constexpr std::size_t kTile = 4;  // pixels and frames that change places among four registers
-  // As many pixels as fill a cache line of a frame: it is read whole before the next frames' lines are.
-  constexpr std::size_t kLine = 16;
+  // So many pixels of four frames are read whole before the next frames are: sixteen streams would contend for sets.
+  constexpr std::size_t kLine = 64;
   const hn::FixedTag<float, kTile> d;
   const std::size_t last_place = into.pixels - 1;
   const auto counts_of = [&](std::size_t frame) { return frames[frame < frames.size() ? frame : 0]; };

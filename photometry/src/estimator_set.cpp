@@ -158,6 +158,13 @@ EstimatorSet::Measured EstimatorSet::measure(const Frame& frame, bool flagged, c
 void EstimatorSet::apply_batch(std::span<const Frame> frames, BatchScratch& scratch, const TakeFluxes& take) const {
   ASTROID_CHECK_LE(std::size_t{1}, frames.size());
   ASTROID_CHECK_LE(frames.size(), kMaxBatch);
+  if (frames.size() == 1) {  // nothing to gain
+    for (const Target& target : targets_) {
+      const Measured measured = measure(frames.front(), true, target);
+      take(target.index, {&measured.flux, 1}, {&measured.flags, 1});
+    }
+    return;
+  }
   const std::size_t pixels = frames.front().pixels.size();
   const std::size_t stride = detail::batch_stride(frames.size());
   std::array<const float*, kMaxBatch> counts_of{};
