@@ -77,11 +77,14 @@ void add_sparse_flags(const FitsReader& reader, std::size_t star, int camera, st
   const auto cameras = reader.read_integers(unit, column_of(reader, unit, "CAMERA"));
   const auto stars = reader.read_integers(unit, column_of(reader, unit, "STAR"));
   const auto exposures = reader.read_integers(unit, column_of(reader, unit, "CADENCENO"));
+  const auto count = reader.read_integers(unit, column_of(reader, unit, "EXPOSURES"));
   const auto bits = reader.read_integers(unit, column_of(reader, unit, "FLAGS"));
   for (std::size_t i = 0; i < bits.size(); ++i) {
     const bool mine = stars[i] == static_cast<std::int64_t>(star) && (camera == 0 || cameras[i] == camera);
-    const bool inside = exposures[i] >= 0 && exposures[i] < static_cast<std::int64_t>(flags.size());
-    if (mine && inside) flags[static_cast<std::size_t>(exposures[i])] |= static_cast<std::uint32_t>(bits[i]);
+    if (!mine || exposures[i] < 0 || count[i] < 0) continue;
+    const auto first = std::min(flags.size(), static_cast<std::size_t>(exposures[i]));
+    const auto last = first + std::min(flags.size() - first, static_cast<std::size_t>(count[i]));
+    for (std::size_t k = first; k < last; ++k) flags[k] |= static_cast<std::uint32_t>(bits[i]);
   }
 }
 
