@@ -99,7 +99,8 @@ class Stream {
         threads_(threads),
         batch_length_(batch_length),
         blocks_{FluxBlock(input.estimators.size(), static_cast<std::size_t>(block_length)),
-                FluxBlock(input.estimators.size(), static_cast<std::size_t>(block_length))} {
+                FluxBlock(input.estimators.size(), static_cast<std::size_t>(block_length))},
+        lost_electrons_(input.simulators.size()) {
     workers_.reserve(static_cast<std::size_t>(threads));
     for (int i = 0; i < threads; ++i) workers_.emplace_back(input, batch_length);
   }
@@ -122,13 +123,13 @@ class Stream {
     series_.end(done, flags_);
     flags_.clear();
     for (ExposureWorker& worker : workers_) worker.take_flags(flags_);
-    for (const double lost : next.lost()) lost_electrons_ += lost;
+    for (const double lost : next.lost()) lost_electrons_[static_cast<std::size_t>(camera)] += lost;
     for (const std::int64_t clipped : next.clipped()) clipped_pixels_ += clipped;
   }
 
   /// Adds what the workers counted to a result.
   void add_to(StreamResult& result, const Plan& plan) {
-    result.lost_electrons = lost_electrons_;
+    for (const double lost : lost_electrons_) result.lost_electrons += lost;
     result.clipped_pixels = clipped_pixels_;
     for (ExposureWorker& worker : workers_) {
       result.timings.simulate += worker.seconds().simulate;
@@ -156,7 +157,7 @@ class Stream {
   std::vector<ExposureWorker> workers_;
   std::vector<LightCurveFlag> flags_;  // of the block that was filled last
   std::atomic<std::int64_t> exposures_done_{0};
-  double lost_electrons_ = 0.0;
+  std::vector<double> lost_electrons_;  // by camera, so that their order does not depend on the blocks
   std::int64_t clipped_pixels_ = 0;
 };
 
