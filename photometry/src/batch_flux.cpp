@@ -12,75 +12,85 @@ namespace astroid::detail::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// As in EstimatorSet::apply(): four running sums, and the order in which they meet.
-constexpr std::size_t kSums = 4;
-// Vectors of frames that are summed side by side, so that a pixel's index is looked up once for both.
-constexpr std::size_t kSideBySide = 2;
+// One vector of frames, or two side by side, so that a pixel's place is looked up once for both.
+template <class D>
+struct Pair {
+  hn::Vec<D> low;
+  hn::Vec<D> high;  // of no meaning where there is only one
+};
 
-// Sums of kVectors neighbouring vectors of frames, the first of which begins at `counts`.
-template <std::size_t kVectors, class D, class Weigh>
-HWY_INLINE void sum_terms(D d, std::span<const std::uint32_t> pixel, const InterleavedFrames& frames,
-                          const float* counts, const Weigh& weigh, hn::Vec<D>* sum) {
+// The sum over terms of weigh(term, counts) for one or two vectors of frames, the first of which begins at `counts`. As
+// in EstimatorSet::apply(), four running sums, and the order in which they meet.
+template <std::size_t kStride, bool kTwo, class D, class Weigh>
+HWY_INLINE Pair<D> sum_terms(D d, std::span<const std::uint32_t> pixel, const float* counts, std::size_t last_place,
+                             const Weigh& weigh) {
   const hn::Rebind<float, D> narrow;
-  const std::size_t lanes = hn::Lanes(d);
-  const std::size_t last_place = frames.pixels - 1;
-  const std::size_t stride = frames.stride;
-  hn::Vec<D> sums[kSums][kVectors];
-  for (auto& row : sums)
-    for (auto& vector : row) vector = hn::Zero(d);
-  const auto add = [&](std::size_t i, hn::Vec<D>* row) HWY_ATTR {
-    const float* place = counts + (pixel[i] & last_place) * stride;
-    for (std::size_t v = 0; v < kVectors; ++v)
-      row[v] = hn::Add(row[v], weigh(i, hn::PromoteTo(d, hn::LoadU(narrow, place + v * lanes))));
+  const auto zero = hn::Zero(d);
+  Pair<D> a{zero, zero};
+  Pair<D> b{zero, zero};
+  Pair<D> c{zero, zero};
+  Pair<D> e{zero, zero};
+  const auto add = [&](std::size_t i, Pair<D>& sum) HWY_ATTR {
+    const float* place = counts + (pixel[i] & last_place) * kStride;
+    sum.low = hn::Add(sum.low, weigh(i, hn::PromoteTo(d, hn::LoadU(narrow, place))));
+    if constexpr (kTwo)
+      sum.high = hn::Add(sum.high, weigh(i, hn::PromoteTo(d, hn::LoadU(narrow, place + hn::Lanes(d)))));
   };
   std::size_t i = 0;
-  for (; i + kSums <= pixel.size(); i += kSums)
-    for (std::size_t s = 0; s < kSums; ++s) add(i + s, sums[s]);
-  if (i < pixel.size()) add(i, sums[0]);
-  if (i + 1 < pixel.size()) add(i + 1, sums[1]);
-  if (i + 2 < pixel.size()) add(i + 2, sums[2]);
-  for (std::size_t v = 0; v < kVectors; ++v)
-    sum[v] = hn::Add(hn::Add(sums[0][v], sums[1][v]), hn::Add(sums[2][v], sums[3][v]));
+  for (; i + 4 <= pixel.size(); i += 4) {
+    add(i, a);
+    add(i + 1, b);
+    add(i + 2, c);
+    add(i + 3, e);
+  }
+  if (i < pixel.size()) add(i, a);
+  if (i + 1 < pixel.size()) add(i + 1, b);
+  if (i + 2 < pixel.size()) add(i + 2, c);
+  return {hn::Add(hn::Add(a.low, b.low), hn::Add(c.low, e.low)),
+          hn::Add(hn::Add(a.high, b.high), hn::Add(c.high, e.high))};
 }
 
-// The fluxes of kVectors vectors of frames from frame `first` on.
-template <std::size_t kVectors, class D>
+// Writes the fluxes of one or two vectors of frames from frame `first` on; returns whether all are finite.
+template <std::size_t kStride, bool kTwo, class D>
 HWY_INLINE bool flux_of(D d, const InterleavedFrames& frames, const BatchTerms& terms, std::size_t first,
                         double* flux) {
   const float* counts = frames.counts + first;
-  hn::Vec<D> level[kVectors];
-  hn::Vec<D> sum[kVectors];
-  if (terms.background.empty()) {
-    for (auto& vector : level) vector = hn::Set(d, terms.bias);
-  } else {
+  const std::size_t last_place = frames.pixels - 1;
+  const auto bias = hn::Set(d, terms.bias);
+  Pair<D> level{bias, bias};
+  if (!terms.background.empty()) {
     const auto plain = [](std::size_t /*term*/, hn::Vec<D> value) HWY_ATTR { return value; };
-    sum_terms<kVectors>(d, terms.background, frames, counts, plain, level);
+    level = sum_terms<kStride, kTwo>(d, terms.background, counts, last_place, plain);
     const auto count = hn::Set(d, static_cast<double>(terms.background.size()));
-    for (auto& vector : level) vector = hn::Div(vector, count);
+    level = {hn::Div(level.low, count), hn::Div(level.high, count)};
   }
   const auto weighted = [d, &terms](std::size_t term, hn::Vec<D> value)
                             HWY_ATTR { return hn::Mul(hn::Set(d, static_cast<double>(terms.weight[term])), value); };
-  sum_terms<kVectors>(d, terms.aperture, frames, counts, weighted, sum);
+  const Pair<D> sum = sum_terms<kStride, kTwo>(d, terms.aperture, counts, last_place, weighted);
   const auto gain = hn::Set(d, terms.gain);
   const auto weight_sum = hn::Set(d, terms.weight_sum);
   const auto offset = hn::Set(d, terms.offset);
-  auto finite = hn::IsFinite(gain);
-  for (std::size_t v = 0; v < kVectors; ++v) {
-    const auto result = hn::Sub(hn::Mul(gain, hn::Sub(sum[v], hn::Mul(level[v], weight_sum))), offset);
-    finite = hn::And(finite, hn::IsFinite(result));
-    hn::StoreU(result, d, flux + first + v * hn::Lanes(d));
+  const auto flux_in = [&](hn::Vec<D> s, hn::Vec<D> l)
+                           HWY_ATTR { return hn::Sub(hn::Mul(gain, hn::Sub(s, hn::Mul(l, weight_sum))), offset); };
+  const auto low = flux_in(sum.low, level.low);
+  hn::StoreU(low, d, flux + first);
+  bool finite = hn::AllTrue(d, hn::IsFinite(low));
+  if constexpr (kTwo) {
+    const auto high = flux_in(sum.high, level.high);
+    hn::StoreU(high, d, flux + first + hn::Lanes(d));
+    finite = hn::AllTrue(d, hn::IsFinite(high)) && finite;
   }
-  return hn::AllTrue(d, finite);
+  return finite;
 }
 
 template <std::size_t kStride>
 HWY_INLINE bool flux_of_all(const InterleavedFrames& frames, const BatchTerms& terms, double* flux) {
   const hn::CappedTag<double, kStride> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
-  constexpr std::size_t kVectors = std::min(kSideBySide, kStride / kLanes);
+  constexpr bool kTwo = kStride > kLanes;
   bool finite = true;
-  for (std::size_t first = 0; first < kStride; first += kVectors * kLanes)
-    finite = flux_of<kVectors>(d, frames, terms, first, flux) && finite;
+  for (std::size_t first = 0; first < kStride; first += kTwo ? 2 * kLanes : kLanes)
+    finite = flux_of<kStride, kTwo>(d, frames, terms, first, flux) && finite;
   return finite;
 }
 

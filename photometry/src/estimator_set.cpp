@@ -145,8 +145,9 @@ EstimatorSet::Measured EstimatorSet::measure(const Frame& frame, bool flagged, c
     measured.flux = gain_ * (sum - bias_ * target.weight_sum) - target.offset;
     return measured;
   }
-  double level = plain_sum(background, counts);
-  if (!std::isfinite(level) || (flagged && any_flag(background, pixel_flags) != 0)) {
+  const bool spoilt = flagged && any_flag(background, pixel_flags) != 0;
+  double level = spoilt ? 0.0 : plain_sum(background, counts);
+  if (spoilt || !std::isfinite(level)) {
     measured.flux = gain_ * sum - background_without_spoilt(frame, target, measured.flags);
     return measured;
   }
