@@ -56,8 +56,9 @@ struct StreamResult {
 /// Workers make and measure batches of exposures, each with a state and frames of its own. Fluxes collect in a block;
 /// while the next block is filled, the stars of the complete one go to the statistics and the light-curve file, every
 /// star by one worker, so results are the same for any number of threads and any division into batches and blocks.
-/// Memory: two blocks (and with several cameras the sums of their mean), below 300 MB for up to a million targets;
-/// about 70 MB of frames a worker at most, but at least two frames.
+/// Memory: two blocks and, with several cameras, sums for their mean, 300 MB in all for up to 800,000 targets; and for
+/// each worker a state and the frames of a batch, 64 MB of them at most but at least one frame
+/// (test: StreamMemory.DoesNotGrowWithTheExposures).
 /// @param estimators  of the targets; empty: images only.
 /// @throws EnvironmentError when a product cannot be written.
 StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Plan>& plan,
