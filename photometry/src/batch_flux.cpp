@@ -20,8 +20,8 @@ struct Pair {
 };
 
 // The sum over terms of weigh(term, counts) for one or two vectors of frames, the first of which begins at `counts`. As
-// in EstimatorSet::apply(), four running sums, and the order in which they meet.
-template <std::size_t kStride, bool kTwo, class D, class Weigh>
+// in EstimatorSet::apply(), four running sums, and the order in which they meet; or all terms in one.
+template <std::size_t kStride, bool kTwo, bool kFourSums = true, class D, class Weigh>
 HWY_INLINE Pair<D> sum_terms(D d, std::span<const std::uint32_t> pixel, const float* counts, std::size_t last_place,
                              const Weigh& weigh) {
   const hn::Rebind<float, D> narrow;
@@ -37,6 +37,10 @@ HWY_INLINE Pair<D> sum_terms(D d, std::span<const std::uint32_t> pixel, const fl
       sum.high = hn::Add(sum.high, weigh(i, hn::PromoteTo(d, hn::LoadU(narrow, place + hn::Lanes(d)))));
   };
   std::size_t i = 0;
+  if constexpr (!kFourSums) {
+    for (; i < pixel.size(); ++i) add(i, a);
+    return a;
+  }
   for (; i + 4 <= pixel.size(); i += 4) {
     add(i, a);
     add(i + 1, b);
@@ -84,6 +88,21 @@ HWY_INLINE bool flux_of(D d, const InterleavedFrames& frames, const BatchTerms& 
 }
 
 template <std::size_t kStride>
+HWY_INLINE void sums_of_all(const InterleavedFrames& frames, const BatchTerms& terms,
+                            std::span<const std::uint32_t> good, double* aperture, double* background) {
+  const hn::CappedTag<double, kStride> d;
+  const std::size_t last_place = frames.pixels - 1;
+  const auto plain = [](std::size_t /*term*/, hn::Vec<decltype(d)> value) HWY_ATTR { return value; };
+  const auto weighted = [d, &terms](std::size_t term, hn::Vec<decltype(d)> value)
+                            HWY_ATTR { return hn::Mul(hn::Set(d, static_cast<double>(terms.weight[term])), value); };
+  for (std::size_t first = 0; first < kStride; first += hn::Lanes(d)) {
+    const float* counts = frames.counts + first;
+    hn::StoreU(sum_terms<kStride, false>(d, terms.aperture, counts, last_place, weighted).low, d, aperture + first);
+    hn::StoreU(sum_terms<kStride, false, false>(d, good, counts, last_place, plain).low, d, background + first);
+  }
+}
+
+template <std::size_t kStride>
 HWY_INLINE bool flux_of_all(const InterleavedFrames& frames, const BatchTerms& terms, double* flux) {
   const hn::CappedTag<double, kStride> d;
   constexpr std::size_t kLanes = hn::MaxLanes(d);
@@ -102,6 +121,18 @@ bool batch_flux(const InterleavedFrames& frames, const BatchTerms& terms, double
       return flux_of_all<8>(frames, terms, flux);
     default:
       return flux_of_all<16>(frames, terms, flux);
+  }
+}
+
+void batch_sums(const InterleavedFrames& frames, const BatchTerms& terms, std::span<const std::uint32_t> good,
+                double* aperture, double* background) {
+  switch (frames.stride) {
+    case 4:
+      return sums_of_all<4>(frames, terms, good, aperture, background);
+    case 8:
+      return sums_of_all<8>(frames, terms, good, aperture, background);
+    default:
+      return sums_of_all<16>(frames, terms, good, aperture, background);
   }
 }
 
@@ -146,6 +177,7 @@ HWY_AFTER_NAMESPACE();
 namespace astroid::detail {
 
 HWY_EXPORT(batch_flux);
+HWY_EXPORT(batch_sums);
 HWY_EXPORT(interleave);
 
 bool batch_flux(const InterleavedFrames& frames, const BatchTerms& terms, double* flux) {
@@ -157,15 +189,28 @@ void interleave(std::span<const float* const> frames, std::size_t first, std::si
   HWY_DYNAMIC_DISPATCH(interleave)(frames, first, last, into);
 }
 
-std::uint8_t any_flags(std::span<const std::uint8_t* const> frames, std::span<std::uint8_t> any) {
-  constexpr std::size_t kPiece = 4096;  // pixels, so that the result stays in the nearest cache
+void batch_sums(const InterleavedFrames& frames, const BatchTerms& terms, std::span<const std::uint32_t> good,
+                double* aperture, double* background) {
+  HWY_DYNAMIC_DISPATCH(batch_sums)(frames, terms, good, aperture, background);
+}
+
+std::uint8_t compare_flags(std::span<const std::uint8_t* const> frames, std::span<std::uint8_t> any,
+                           std::span<std::uint8_t> varying) {
+  constexpr std::size_t kPiece = 4096;  // pixels, so that the results stay in the nearest cache
   std::uint8_t all = 0;
   for (std::size_t first = 0; first < any.size(); first += kPiece) {
-    const std::span<std::uint8_t> piece = any.subspan(first, std::min(kPiece, any.size() - first));
-    std::copy_n(frames.front() + first, piece.size(), piece.begin());
-    for (const std::uint8_t* flags : frames.subspan(1))
-      for (std::size_t p = 0; p < piece.size(); ++p) piece[p] = static_cast<std::uint8_t>(piece[p] | flags[first + p]);
-    for (const std::uint8_t flag : piece) all = static_cast<std::uint8_t>(all | flag);
+    const std::size_t count = std::min(kPiece, any.size() - first);
+    std::uint8_t* in_any = &any[first];
+    std::uint8_t* in_some = &varying[first];
+    std::copy_n(frames.front() + first, count, in_any);
+    std::fill_n(in_some, count, std::uint8_t{0});
+    for (const std::uint8_t* frame : frames.subspan(1)) {
+      for (std::size_t p = 0; p < count; ++p) {
+        in_some[p] = static_cast<std::uint8_t>(in_some[p] | (in_any[p] ^ frame[first + p]));
+        in_any[p] = static_cast<std::uint8_t>(in_any[p] | frame[first + p]);
+      }
+    }
+    for (std::size_t p = 0; p < count; ++p) all = static_cast<std::uint8_t>(all | in_any[p]);
   }
   return all;
 }

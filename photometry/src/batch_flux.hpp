@@ -43,7 +43,18 @@ void interleave(std::span<const float* const> frames, std::size_t first, std::si
 /// @returns     whether all of them are finite.
 bool batch_flux(const InterleavedFrames& frames, const BatchTerms& terms, double* flux);
 
-/// Ors the flags of all frames, pixel by pixel.  @param any  [out] shape (pixels).  @returns all of them.
-std::uint8_t any_flags(std::span<const std::uint8_t* const> frames, std::span<std::uint8_t> any);
+/// The sums of a target whose background has pixels to be left out, for every frame: as EstimatorSet takes them one
+/// frame at a time, the background in one running sum.
+/// @param good        pixels of the background that count.
+/// @param aperture    [out] shape (frames.stride), sum of weight * counts, ADU.
+/// @param background  [out] shape (frames.stride), sum of counts in `good`, ADU.
+void batch_sums(const InterleavedFrames& frames, const BatchTerms& terms, std::span<const std::uint32_t> good,
+                double* aperture, double* background);
+
+/// Finds the flags that any frame has, pixel by pixel, and those that some frames have and others have not.
+/// @param any, varying  [out] shape (pixels).
+/// @returns             the flags of all pixels.
+std::uint8_t compare_flags(std::span<const std::uint8_t* const> frames, std::span<std::uint8_t> any,
+                           std::span<std::uint8_t> varying);
 
 }  // namespace astroid::detail

@@ -176,7 +176,8 @@ void EstimatorSet::apply_batch(std::span<const Frame> frames, BatchScratch& scra
   }
   const std::span<const float* const> counts(counts_of.data(), frames.size());
   scratch.any_flag.resize(pixels);
-  const bool flagged = detail::any_flags({flags_of.data(), frames.size()}, scratch.any_flag) != 0;
+  scratch.varying.resize(pixels);
+  const bool flagged = detail::compare_flags({flags_of.data(), frames.size()}, scratch.any_flag, scratch.varying) != 0;
   scratch.interleaved.resize(stretch_ * stride / kMaxBatch);
   const detail::InterleavedFrames interleaved{scratch.interleaved.front().counts.data(), stretch_, stride};
 
@@ -194,25 +195,53 @@ void EstimatorSet::apply_batch(std::span<const Frame> frames, BatchScratch& scra
         detail::interleave(counts, std::max(ready, next - std::min(next, stretch_)), next, interleaved);
         ready = next;
       }
-      const bool finite = detail::batch_flux(interleaved,
-                                             {.aperture = aperture,
-                                              .weight = aperture_weight_.data() + target.aperture_begin,
-                                              .background = background,
-                                              .weight_sum = target.weight_sum,
-                                              .offset = target.offset,
-                                              .gain = gain_,
-                                              .bias = bias_},
-                                             flux.data());
+      const detail::BatchTerms terms{.aperture = aperture,
+                                     .weight = aperture_weight_.data() + target.aperture_begin,
+                                     .background = background,
+                                     .weight_sum = target.weight_sum,
+                                     .offset = target.offset,
+                                     .gain = gain_,
+                                     .bias = bias_};
+      bool measured = detail::batch_flux(interleaved, terms, flux.data());
       const bool spoilt = flagged && (any_flag(aperture, scratch.any_flag.data()) != 0 ||
                                       any_flag(background, scratch.any_flag.data()) != 0);
-      for (std::size_t f = 0; (spoilt || !finite) && f < frames.size(); ++f) {
-        const Measured measured = measure(frames[f], flagged, target);
-        flux[f] = measured.flux;
-        flags[f] = measured.flags;
+      if (spoilt) measured = measure_spoilt(interleaved, terms, measured, scratch, flux, flags);
+      for (std::size_t f = 0; !measured && f < frames.size(); ++f) {
+        const Measured single = measure(frames[f], flagged, target);
+        flux[f] = single.flux;
+        flags[f] = single.flags;
       }
     }
     take(target.index, {flux.data(), frames.size()}, {flags.data(), frames.size()});
   }
+}
+
+bool EstimatorSet::measure_spoilt(const detail::InterleavedFrames& frames, const detail::BatchTerms& terms, bool finite,
+                                  BatchScratch& scratch, std::span<double, kMaxBatch> flux,
+                                  std::span<std::uint32_t, kMaxBatch> flags) const {
+  if (any_flag(terms.aperture, scratch.varying.data()) != 0) return false;
+  if (any_flag(terms.background, scratch.varying.data()) != 0) return false;
+  std::uint32_t more = aperture_flags(any_flag(terms.aperture, scratch.any_flag.data()));
+  const std::uint8_t in_background = any_flag(terms.background, scratch.any_flag.data());
+  if (in_background != 0) {
+    scratch.good.clear();
+    for (const std::uint32_t pixel : terms.background)
+      if (scratch.any_flag[pixel] == 0) scratch.good.push_back(pixel);
+    if (2 * scratch.good.size() < terms.background.size()) return false;
+    more |=
+        (aperture_flags(in_background) & measurement_flag::kSaturated) != 0 ? measurement_flag::kSpoiltBackground : 0;
+    std::array<double, kMaxBatch> sum{};
+    std::array<double, kMaxBatch> level{};
+    detail::batch_sums(frames, terms, scratch.good, sum.data(), level.data());
+    const auto good = static_cast<double>(scratch.good.size());
+    finite = true;
+    for (std::size_t f = 0; f < frames.stride; ++f) {
+      finite = finite && std::isfinite(sum[f]) && std::isfinite(level[f]);
+      flux[f] = gain_ * sum[f] - (gain_ * (level[f] / good) * terms.weight_sum + terms.offset);
+    }
+  }
+  for (std::uint32_t& flag : flags) flag |= more;
+  return finite;
 }
 
 double EstimatorSet::background_without_spoilt(const Frame& frame, const Target& target, std::uint32_t& flags) const {

@@ -37,18 +37,21 @@ test::GroundScene crowded_scene() {
   return scene;
 }
 
-// Noisy frames, every other one with pixels that are saturated, defective or not finite.
+// Which pixels are saturated, defective or not finite.
+enum class Spoilt { kNone, kTheSameInAllFrames, kInEveryOtherFrame };
+
 std::vector<Frame> frames_of(const test::GroundScene& scene, const std::shared_ptr<const PixelLayout>& layout,
-                             std::size_t count, bool spoilt) {
+                             std::size_t count, Spoilt spoilt) {
   const std::vector<double> expected = test::expected_electrons(*layout, scene);
   const test::TestNoise noise(4);
   std::vector<Frame> frames;
   for (std::uint32_t f = 0; f < count; ++f) {
     frames.push_back(test::noisy_frame(layout, scene, expected, noise, f));
+    const std::uint32_t pattern = spoilt == Spoilt::kInEveryOtherFrame ? 1000 + f : 1000;
     const auto any_pixel = [&](std::uint32_t i) {
-      return static_cast<std::size_t>(static_cast<double>(layout->size()) * noise.uniform(1000 + f, i));
+      return static_cast<std::size_t>(static_cast<double>(layout->size()) * noise.uniform(pattern, i));
     };
-    if (!spoilt || f % 2 == 0) continue;
+    if (spoilt == Spoilt::kNone || (spoilt == Spoilt::kInEveryOtherFrame && f % 2 == 0)) continue;
     Frame& frame = frames.back();
     for (std::uint32_t i = 0; i < 4; ++i) {
       frame.flags.pixels()[any_pixel(6 * i)] = pixel_flag::kFullWell;
@@ -95,7 +98,7 @@ Comparison compare(const EstimatorSet& set, std::span<const Frame> frames) {
   return seen;
 }
 
-using Case = std::tuple<PhotometryMethod, BackgroundMethod, bool>;
+using Case = std::tuple<PhotometryMethod, BackgroundMethod, Spoilt>;
 
 class EstimatorBatch : public testing::TestWithParam<Case> {};
 
@@ -114,7 +117,7 @@ TEST_P(EstimatorBatch, HasTheBitsOfSingleFrames) {
     EXPECT_EQ(seen.fluxes, size * set.size());
     flags |= seen.flags;
   }
-  if (!spoilt) return;
+  if (spoilt == Spoilt::kNone) return;
   std::uint32_t expected = measurement_flag::kSaturated | measurement_flag::kBadPixel | measurement_flag::kOutside;
   if (background == BackgroundMethod::kLocal)
     expected |= measurement_flag::kNoBackground | measurement_flag::kSpoiltBackground;
@@ -124,7 +127,8 @@ TEST_P(EstimatorBatch, HasTheBitsOfSingleFrames) {
 INSTANTIATE_TEST_SUITE_P(
     All, EstimatorBatch,
     testing::Combine(testing::Values(PhotometryMethod::kAperture, PhotometryMethod::kMask, PhotometryMethod::kWeighted),
-                     testing::Values(BackgroundMethod::kKnown, BackgroundMethod::kLocal), testing::Bool()));
+                     testing::Values(BackgroundMethod::kKnown, BackgroundMethod::kLocal),
+                     testing::Values(Spoilt::kNone, Spoilt::kTheSameInAllFrames, Spoilt::kInEveryOtherFrame)));
 
 // Restores the processor's own instruction sets at its end.
 class SimdTargets {
@@ -148,7 +152,7 @@ TEST(EstimatorBatchOnAnyProcessor, HasTheBitsOfSingleFrames) {
   const test::GroundScene scene = crowded_scene();
   const auto layout = test::full_frame(kColumns, kRows);
   const EstimatorSet set(build_estimators(*layout, scene.model(), settings), scene.gain, scene.bias);
-  const std::vector<Frame> frames = frames_of(scene, layout, EstimatorSet::kMaxBatch, true);
+  const std::vector<Frame> frames = frames_of(scene, layout, EstimatorSet::kMaxBatch, Spoilt::kTheSameInAllFrames);
   const std::int64_t supported = hwy::SupportedTargets();
   SimdTargets targets;
   int tried = 0;
@@ -172,7 +176,7 @@ TEST(EstimatorBatchOfWindows, HasTheBitsOfSingleFrames) {
   PhotometrySettings settings;
   settings.background = BackgroundMethod::kLocal;
   const EstimatorSet set(build_estimators(*layout, scene.model(), settings), scene.gain, scene.bias);
-  const std::vector<Frame> frames = frames_of(scene, layout, 7, true);
+  const std::vector<Frame> frames = frames_of(scene, layout, 7, Spoilt::kInEveryOtherFrame);
   EXPECT_EQ(compare(set, frames).fluxes, 7 * set.size());
 }
 
@@ -181,10 +185,10 @@ TEST(EstimatorBatchOfNothing, MeasuresNothing) {
   scene.psf = make_gaussian_psf(0.6);
   const auto layout = test::full_frame(8, 8);
   const EstimatorSet none(build_estimators(*layout, scene.model(), PhotometrySettings{}), scene.gain, scene.bias);
-  EXPECT_EQ(compare(none, frames_of(scene, layout, 5, false)).fluxes, 0U);
+  EXPECT_EQ(compare(none, frames_of(scene, layout, 5, Spoilt::kNone)).fluxes, 0U);
   scene.add_target({-50.0, 3.0}, 1e4);
   const EstimatorSet outside(build_estimators(*layout, scene.model(), PhotometrySettings{}), scene.gain, scene.bias);
-  EXPECT_EQ(compare(outside, frames_of(scene, layout, 5, false)).fluxes, 5U);
+  EXPECT_EQ(compare(outside, frames_of(scene, layout, 5, Spoilt::kNone)).fluxes, 5U);
 }
 
 TEST(EstimatorBatchOfNothing, RefusesNoFramesAndTooMany) {
@@ -193,7 +197,7 @@ TEST(EstimatorBatchOfNothing, RefusesNoFramesAndTooMany) {
   scene.add_target({4.0, 4.0}, 1e4);
   const auto layout = test::full_frame(8, 8);
   const EstimatorSet set(build_estimators(*layout, scene.model(), PhotometrySettings{}), scene.gain, scene.bias);
-  const std::vector<Frame> frames = frames_of(scene, layout, EstimatorSet::kMaxBatch + 1, false);
+  const std::vector<Frame> frames = frames_of(scene, layout, EstimatorSet::kMaxBatch + 1, Spoilt::kNone);
   EstimatorSet::BatchScratch scratch;
   const auto ignore = [](std::size_t, std::span<const double>, std::span<const std::uint32_t>) {};
   EXPECT_THROW(set.apply_batch({}, scratch, ignore), BugError);

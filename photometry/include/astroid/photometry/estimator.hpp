@@ -21,6 +21,11 @@
 
 namespace astroid {
 
+namespace detail {
+struct InterleavedFrames;
+struct BatchTerms;
+}  // namespace detail
+
 /// What can be wrong with one measured flux; bits, each named in docs/flags.md and decoded in the report.
 namespace measurement_flag {
 inline constexpr std::uint32_t kEdge = 1U << 0;       ///< the aperture is cut by the edge of the frame or window
@@ -150,6 +155,8 @@ class EstimatorSet {
     };
     std::vector<Line> interleaved;
     std::vector<std::uint8_t> any_flag;  // of each pixel, in any frame
+    std::vector<std::uint8_t> varying;   // flags that a pixel has in some frames only
+    std::vector<std::uint32_t> good;     // pixels of a background
   };
 
   /// Called with the index of a target and its flux and flags in each frame.
@@ -159,7 +166,8 @@ class EstimatorSet {
   /// Measures all targets on several frames at once, several times faster than one by one.
   ///
   /// The frames are interleaved, frame by frame within a pixel, just ahead of the targets that read them, so a term is
-  /// one load for all frames. A target with a flagged or unusable pixel in any frame is measured frame by frame.
+  /// one load for all frames. Where a pixel's flags differ among the frames, or it is not finite, the target is
+  /// measured frame by frame.
   /// @param frames  1 … kMaxBatch, over the layout the estimators were built for.
   /// @param take    called once for every target, in the order of their pixels.
   /// @rng none  @thread safe, each with its own scratch
@@ -194,6 +202,11 @@ class EstimatorSet {
   }
   // `flagged` may be true when the frame has no flagged pixel; false saves looking.
   [[nodiscard]] Measured measure(const Frame& frame, bool flagged, const Target& target) const;
+  // A target with flagged pixels, if all frames have the same; `finite`: `flux` holds sums over all of its pixels.
+  // Returns whether flux and flags hold now.
+  bool measure_spoilt(const detail::InterleavedFrames& frames, const detail::BatchTerms& terms, bool finite,
+                      BatchScratch& scratch, std::span<double, kMaxBatch> flux,
+                      std::span<std::uint32_t, kMaxBatch> flags) const;
   [[nodiscard]] double background_without_spoilt(const Frame& frame, const Target& target, std::uint32_t& flags) const;
 
   std::vector<Target> targets_;  // in the order of their pixels, so that neighbours share cache lines
