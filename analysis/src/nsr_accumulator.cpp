@@ -7,6 +7,10 @@
 
 namespace astroid {
 
+double SeriesStatistics::total(const std::array<double, kLanes>& lanes) {
+  return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
+}
+
 SeriesStatistics::SeriesStatistics(std::size_t stars, std::int64_t exposures_per_bin)
     : per_bin_(exposures_per_bin), stars_(stars) {
   ASTROID_CHECK_LE(2, exposures_per_bin);
@@ -19,13 +23,14 @@ void SeriesStatistics::close(Star& star) const {
   star.open_n = 0;
   if (n == 0) return;
   const double count = static_cast<double>(n);
-  const double mean = star.shift + star.sum / count;
-  const double m2 = std::max(0.0, star.sum_squares - star.sum * star.sum / count);
+  const double sum = total(star.sum);
+  const double mean = star.shift + sum / count;
+  const double m2 = std::max(0.0, total(star.sum_squares) - sum * sum / count);
 
-  const double total = static_cast<double>(star.n + n);
+  const double all = static_cast<double>(star.n + n);
   const double delta = mean - star.mean;
-  star.m2 += m2 + delta * delta * (static_cast<double>(star.n) * count / total);
-  star.mean += delta * (count / total);
+  star.m2 += m2 + delta * delta * (static_cast<double>(star.n) * count / all);
+  star.mean += delta * (count / all);
   star.n += n;
 
   // A bin with fewer than half its exposures is not a measurement of the bin.
@@ -44,37 +49,56 @@ void SeriesStatistics::add(std::size_t star_index, std::int64_t first, std::span
   Star& star = stars_[star_index];
   ASTROID_CHECK_LE(star.next, first);
   star.next = first + static_cast<std::int64_t>(deviation.size());
-  std::size_t i = 0;
-  while (i < deviation.size()) {
-    const std::int64_t exposure = first + static_cast<std::int64_t>(i);
+  std::int64_t exposure = first;
+  while (!deviation.empty()) {
     const std::int64_t bin = exposure / per_bin_;
     if (bin != star.open_bin) {
       close(star);
       star.open_bin = bin;
-      star.sum = 0.0;
-      star.sum_squares = 0.0;
+      star.sum.fill(0.0);
+      star.sum_squares.fill(0.0);
     }
-    const std::size_t left = static_cast<std::size_t>((bin + 1) * per_bin_ - exposure);
-    const std::size_t end = std::min(deviation.size(), i + left);
-    double sum = star.sum;
-    double squares = star.sum_squares;
-    std::int64_t n = star.open_n;
-    for (; i < end; ++i) {
-      const double d = static_cast<double>(deviation[i]);
-      if (std::isnan(d)) {
-        ++star.missing;
-        continue;
-      }
-      if (n == 0) star.shift = d;
-      const double e = d - star.shift;
-      sum += e;
-      squares += e * e;
-      ++n;
-    }
-    star.sum = sum;
-    star.sum_squares = squares;
-    star.open_n = n;
+    const auto left = static_cast<std::size_t>((bin + 1) * per_bin_ - exposure);
+    const std::size_t count = std::min(deviation.size(), left);
+    add_to_bin(star, static_cast<std::size_t>(exposure - bin * per_bin_), deviation.first(count));
+    deviation = deviation.subspan(count);
+    exposure += static_cast<std::int64_t>(count);
   }
+}
+
+void SeriesStatistics::add_to_bin(Star& star, std::size_t place, std::span<const float> deviation) {
+  const auto missing = std::count_if(deviation.begin(), deviation.end(), [](float d) { return std::isnan(d); });
+  star.missing += missing;
+  const std::int64_t measured = static_cast<std::int64_t>(deviation.size()) - missing;
+  if (measured == 0) return;
+  if (star.open_n == 0)
+    star.shift = *std::find_if(deviation.begin(), deviation.end(), [](float d) { return !std::isnan(d); });
+  star.open_n += measured;
+  // In variables of their own, which nothing else can point at.
+  const double shift = star.shift;
+  std::array<double, kLanes> sum = star.sum;
+  std::array<double, kLanes> squares = star.sum_squares;
+  const auto add_one = [&](std::size_t i) {
+    if (std::isnan(deviation[i])) return;
+    const std::size_t lane = (place + i) % kLanes;
+    const double e = static_cast<double>(deviation[i]) - shift;
+    sum[lane] += e;
+    squares[lane] += e * e;
+  };
+  std::size_t i = 0;
+  if (missing == 0) {
+    for (; i < deviation.size() && (place + i) % kLanes != 0; ++i) add_one(i);
+    for (; i + kLanes <= deviation.size(); i += kLanes) {
+      for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const double e = static_cast<double>(deviation[i + lane]) - shift;
+        sum[lane] += e;
+        squares[lane] += e * e;
+      }
+    }
+  }
+  for (; i < deviation.size(); ++i) add_one(i);
+  star.sum = sum;
+  star.sum_squares = squares;
 }
 
 SeriesSummary SeriesStatistics::summary(std::size_t star_index) const {

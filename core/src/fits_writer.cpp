@@ -201,23 +201,36 @@ struct FitsWriter::State {
         }
       }
     }
-    const std::int64_t size =
-        unit.axes.empty() ? 0
-                          : std::accumulate(unit.axes.begin(), unit.axes.end(), std::int64_t{1}, std::multiplies<>());
-    ASTROID_CHECK_LE(std::int64_t{0}, first);
-    ASTROID_CHECK_LE(first + static_cast<std::int64_t>(values.size()), size);
+    check_range(unit, first, values.size());
     if (values.empty()) return;
     if (unit.is_large) {
-      if (unit.pixel != native_format<T>()) throw BugError("FitsWriter: pixels of a large image have another type");
       seal();
-      attempt([&] {
-        write_fits_numbers(descriptor, unit.data_start + first * static_cast<std::int64_t>(sizeof(T)), values);
-      });
+      write_large_pixels(unit, first, values);
       return;
     }
     // CFITSIO takes its input as mutable but does not change it.
     call(&ffppr, type_code<T>(), LONGLONG{first + 1}, static_cast<LONGLONG>(values.size()),
          mutable_pointer(values.data()));
+  }
+
+  static void check_range(const Unit& unit, std::int64_t first, std::size_t count) {
+    const std::int64_t size =
+        unit.axes.empty() ? 0
+                          : std::accumulate(unit.axes.begin(), unit.axes.end(), std::int64_t{1}, std::multiplies<>());
+    ASTROID_CHECK_LE(std::int64_t{0}, first);
+    ASTROID_CHECK_LE(first + static_cast<std::int64_t>(count), size);
+  }
+
+  // Changes nothing but the file, so several threads may write at a time.
+  template <class T>
+  void write_large_pixels(const Unit& unit, std::int64_t first, std::span<const T> values) const {
+    if (!unit.is_large || unit.data_start == 0) throw BugError("FitsWriter: not a large image whose header has ended");
+    if (unit.pixel != native_format<T>()) throw BugError("FitsWriter: pixels of a large image have another type");
+    try {
+      write_fits_numbers(descriptor, unit.data_start + first * static_cast<std::int64_t>(sizeof(T)), values);
+    } catch (const std::system_error& error) {
+      throw EnvironmentError(path.string(), error.code().message());
+    }
   }
 
   template <class T>
@@ -276,6 +289,19 @@ int FitsWriter::begin_large_image(FitsNumber pixel, const std::vector<std::int64
   const int number = begin_image(pixel, axes, name);
   state_->units.back().is_large = true;
   return number;
+}
+
+void FitsWriter::end_large_header() {
+  if (!state_->current_unit(true).is_large) throw BugError("FitsWriter: the current unit is not a large image");
+  state_->seal();
+}
+
+void FitsWriter::write_large_pixels(int number, std::int64_t first, std::span<const float> values) const {
+  ASTROID_CHECK_LE(1, number);
+  ASTROID_CHECK_LE(static_cast<std::size_t>(number), state_->units.size());
+  const State::Unit& unit = state_->units[static_cast<std::size_t>(number) - 1];
+  State::check_range(unit, first, values.size());
+  state_->write_large_pixels(unit, first, values);
 }
 
 int FitsWriter::begin_table(const std::vector<FitsColumn>& columns, const std::string& name, std::int64_t rows) {

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 #include "astroid/core/error.hpp"
 #include "astroid/photometry/estimator.hpp"
+#include "batch_flux.hpp"
 
 namespace astroid {
 
@@ -51,6 +53,13 @@ std::uint32_t aperture_flags(std::uint8_t pixel_flags) {
   return flags;
 }
 
+// Frames are interleaved some hundred pixels at a time, just before they are read.
+constexpr std::size_t kStep = 256;
+
+std::size_t whole_steps(std::size_t pixels) {
+  return (pixels + kStep - 1) / kStep * kStep;
+}
+
 }  // namespace
 
 EstimatorSet::EstimatorSet(std::span<const StarEstimator> estimators, Gain gain, Adu bias)
@@ -87,45 +96,152 @@ EstimatorSet::EstimatorSet(std::span<const StarEstimator> estimators, Gain gain,
     target.background_end = background_pixel_.size();
     targets_.push_back(target);
   }
+  find_stretch();
+}
+
+void EstimatorSet::find_stretch() {
+  std::size_t end = 0;
+  std::size_t longest = 1;
+  for (Target& target : targets_) {
+    std::size_t begin = std::numeric_limits<std::size_t>::max();
+    for (const std::span<const std::uint32_t> pixels : {aperture_of(target), background_of(target)})
+      for (const std::uint32_t pixel : pixels) {
+        begin = std::min(begin, std::size_t{pixel});
+        end = std::max(end, std::size_t{pixel} + 1);
+      }
+    target.pixel_end = end;
+    if (begin < end) longest = std::max(longest, whole_steps(end) - begin);
+  }
+  stretch_ = std::bit_ceil(std::max(longest, kMaxBatch));
 }
 
 void EstimatorSet::apply(const Frame& frame, std::span<double> flux, std::span<std::uint32_t> flags) const {
   ASTROID_CHECK_EQ(flux.size(), size());
   ASTROID_CHECK_EQ(flags.size(), size());
-  const float* counts = frame.pixels.pixels().data();
-  const std::uint8_t* pixel_flags = frame.flags.pixels().data();
   // Most frames of a faint field have no flagged pixel at all: one pass over the bytes saves a gather per term.
   const bool flagged = std::any_of(frame.flags.pixels().begin(), frame.flags.pixels().end(),
                                    [](std::uint8_t flag) { return flag != 0; });
   for (const Target& target : targets_) {
-    const std::size_t terms = target.aperture_end - target.aperture_begin;
-    std::uint32_t& flag = flags[target.index];
-    double& result = flux[target.index];
-    flag = target.flags;
-    result = std::numeric_limits<double>::quiet_NaN();
-    if (terms == 0) continue;
-    const std::span<const std::uint32_t> pixel(aperture_pixel_.data() + target.aperture_begin, terms);
-    const double sum = weighted_sum(pixel, {aperture_weight_.data() + target.aperture_begin, terms}, counts);
-    if (flagged) flag |= aperture_flags(any_flag(pixel, pixel_flags));
-    if (!std::isfinite(sum)) {
-      flag |= measurement_flag::kBadPixel;
-      continue;
-    }
-    const std::size_t background_terms = target.background_end - target.background_begin;
-    if (background_terms == 0) {
-      result = gain_ * (sum - bias_ * target.weight_sum) - target.offset;
-      continue;
-    }
-    const std::span<const std::uint32_t> background(background_pixel_.data() + target.background_begin,
-                                                    background_terms);
-    double level = plain_sum(background, counts);
-    if (!std::isfinite(level) || (flagged && any_flag(background, pixel_flags) != 0)) {
-      result = gain_ * sum - background_without_spoilt(frame, target, flag);
-      continue;
-    }
-    level /= static_cast<double>(background_terms);
-    result = gain_ * (sum - level * target.weight_sum) - target.offset;
+    const Measured measured = measure(frame, flagged, target);
+    flux[target.index] = measured.flux;
+    flags[target.index] = measured.flags;
   }
+}
+
+EstimatorSet::Measured EstimatorSet::measure(const Frame& frame, bool flagged, const Target& target) const {
+  const float* counts = frame.pixels.pixels().data();
+  const std::uint8_t* pixel_flags = frame.flags.pixels().data();
+  Measured measured{std::numeric_limits<double>::quiet_NaN(), target.flags};
+  const std::span<const std::uint32_t> pixel = aperture_of(target);
+  if (pixel.empty()) return measured;
+  const double sum = weighted_sum(pixel, {aperture_weight_.data() + target.aperture_begin, pixel.size()}, counts);
+  if (flagged) measured.flags |= aperture_flags(any_flag(pixel, pixel_flags));
+  if (!std::isfinite(sum)) {
+    measured.flags |= measurement_flag::kBadPixel;
+    return measured;
+  }
+  const std::span<const std::uint32_t> background = background_of(target);
+  if (background.empty()) {
+    measured.flux = gain_ * (sum - bias_ * target.weight_sum) - target.offset;
+    return measured;
+  }
+  const bool spoilt = flagged && any_flag(background, pixel_flags) != 0;
+  double level = spoilt ? 0.0 : plain_sum(background, counts);
+  if (spoilt || !std::isfinite(level)) {
+    measured.flux = gain_ * sum - background_without_spoilt(frame, target, measured.flags);
+    return measured;
+  }
+  level /= static_cast<double>(background.size());
+  measured.flux = gain_ * (sum - level * target.weight_sum) - target.offset;
+  return measured;
+}
+
+void EstimatorSet::apply_batch(std::span<const Frame> frames, BatchScratch& scratch, const TakeFluxes& take) const {
+  ASTROID_CHECK_LE(std::size_t{1}, frames.size());
+  ASTROID_CHECK_LE(frames.size(), kMaxBatch);
+  if (frames.size() == 1) {  // nothing to gain
+    for (const Target& target : targets_) {
+      const Measured measured = measure(frames.front(), true, target);
+      take(target.index, {&measured.flux, 1}, {&measured.flags, 1});
+    }
+    return;
+  }
+  const std::size_t pixels = frames.front().pixels.size();
+  const std::size_t stride = detail::batch_stride(frames.size());
+  std::array<const float*, kMaxBatch> counts_of{};
+  std::array<const std::uint8_t*, kMaxBatch> flags_of{};
+  for (std::size_t f = 0; f < frames.size(); ++f) {
+    counts_of[f] = frames[f].pixels.pixels().data();
+    flags_of[f] = frames[f].flags.pixels().data();
+  }
+  const std::span<const float* const> counts(counts_of.data(), frames.size());
+  scratch.any_flag.resize(pixels);
+  scratch.varying.resize(pixels);
+  const bool flagged = detail::compare_flags({flags_of.data(), frames.size()}, scratch.any_flag, scratch.varying) != 0;
+  scratch.interleaved.resize(stretch_ * stride / kMaxBatch);
+  const detail::InterleavedFrames interleaved{scratch.interleaved.front().counts.data(), stretch_, stride};
+
+  std::array<double, kMaxBatch> flux{};
+  std::array<std::uint32_t, kMaxBatch> flags{};
+  std::size_t ready = 0;  // pixels before it have been interleaved
+  for (const Target& target : targets_) {
+    flux.fill(std::numeric_limits<double>::quiet_NaN());
+    flags.fill(target.flags);
+    const std::span<const std::uint32_t> aperture = aperture_of(target);
+    const std::span<const std::uint32_t> background = background_of(target);
+    if (!aperture.empty()) {
+      if (ready < target.pixel_end) {
+        const std::size_t next = std::min(pixels, whole_steps(target.pixel_end));
+        detail::interleave(counts, std::max(ready, next - std::min(next, stretch_)), next, interleaved);
+        ready = next;
+      }
+      const detail::BatchTerms terms{.aperture = aperture,
+                                     .weight = aperture_weight_.data() + target.aperture_begin,
+                                     .background = background,
+                                     .weight_sum = target.weight_sum,
+                                     .offset = target.offset,
+                                     .gain = gain_,
+                                     .bias = bias_};
+      bool measured = detail::batch_flux(interleaved, terms, flux.data());
+      const bool spoilt = flagged && (any_flag(aperture, scratch.any_flag.data()) != 0 ||
+                                      any_flag(background, scratch.any_flag.data()) != 0);
+      if (spoilt) measured = measure_spoilt(interleaved, terms, measured, scratch, flux, flags);
+      for (std::size_t f = 0; !measured && f < frames.size(); ++f) {
+        const Measured single = measure(frames[f], flagged, target);
+        flux[f] = single.flux;
+        flags[f] = single.flags;
+      }
+    }
+    take(target.index, {flux.data(), frames.size()}, {flags.data(), frames.size()});
+  }
+}
+
+bool EstimatorSet::measure_spoilt(const detail::InterleavedFrames& frames, const detail::BatchTerms& terms, bool finite,
+                                  BatchScratch& scratch, std::span<double, kMaxBatch> flux,
+                                  std::span<std::uint32_t, kMaxBatch> flags) const {
+  if (any_flag(terms.aperture, scratch.varying.data()) != 0) return false;
+  if (any_flag(terms.background, scratch.varying.data()) != 0) return false;
+  std::uint32_t more = aperture_flags(any_flag(terms.aperture, scratch.any_flag.data()));
+  const std::uint8_t in_background = any_flag(terms.background, scratch.any_flag.data());
+  if (in_background != 0) {
+    scratch.good.clear();
+    for (const std::uint32_t pixel : terms.background)
+      if (scratch.any_flag[pixel] == 0) scratch.good.push_back(pixel);
+    if (2 * scratch.good.size() < terms.background.size()) return false;
+    more |=
+        (aperture_flags(in_background) & measurement_flag::kSaturated) != 0 ? measurement_flag::kSpoiltBackground : 0;
+    std::array<double, kMaxBatch> sum{};
+    std::array<double, kMaxBatch> level{};
+    detail::batch_sums(frames, terms, scratch.good, sum.data(), level.data());
+    const auto good = static_cast<double>(scratch.good.size());
+    finite = true;
+    for (std::size_t f = 0; f < frames.stride; ++f) {
+      finite = finite && std::isfinite(sum[f]) && std::isfinite(level[f]);
+      flux[f] = gain_ * sum[f] - (gain_ * (level[f] / good) * terms.weight_sum + terms.offset);
+    }
+  }
+  for (std::uint32_t& flag : flags) flag |= more;
+  return finite;
 }
 
 double EstimatorSet::background_without_spoilt(const Frame& frame, const Target& target, std::uint32_t& flags) const {

@@ -83,18 +83,22 @@ class FlagTable {
         camera_(column_of(reader, unit_, "CAMERA")),
         star_(column_of(reader, unit_, "STAR")),
         exposure_(column_of(reader, unit_, "CADENCENO")),
+        length_(column_of(reader, unit_, "EXPOSURES")),
         flags_(column_of(reader, unit_, "FLAGS")) {}
 
   // Adds those of one star and camera to the flags of its exposures.
   void add(int camera, std::size_t star, std::vector<std::uint32_t>& flags) const {
     const auto number = static_cast<std::int64_t>(star);
     const std::int64_t first = first_not_before(camera, number);
-    const std::int64_t count = first_not_before(camera, number + 1) - first;
-    const std::vector<std::int64_t> exposures = reader_.read_integers(unit_, exposure_, first, count);
-    const std::vector<std::int64_t> bits = reader_.read_integers(unit_, flags_, first, count);
+    const std::int64_t rows = first_not_before(camera, number + 1) - first;
+    const std::vector<std::int64_t> exposures = reader_.read_integers(unit_, exposure_, first, rows);
+    const std::vector<std::int64_t> lengths = reader_.read_integers(unit_, length_, first, rows);
+    const std::vector<std::int64_t> bits = reader_.read_integers(unit_, flags_, first, rows);
     for (std::size_t i = 0; i < bits.size(); ++i) {
-      const bool inside = exposures[i] >= 0 && exposures[i] < static_cast<std::int64_t>(flags.size());
-      if (inside) flags[static_cast<std::size_t>(exposures[i])] |= static_cast<std::uint32_t>(bits[i]);
+      if (exposures[i] < 0 || lengths[i] < 0) continue;
+      const auto begin = std::min(flags.size(), static_cast<std::size_t>(exposures[i]));
+      const auto end = begin + std::min(flags.size() - begin, static_cast<std::size_t>(lengths[i]));
+      for (std::size_t k = begin; k < end; ++k) flags[k] |= static_cast<std::uint32_t>(bits[i]);
     }
   }
 
@@ -118,7 +122,7 @@ class FlagTable {
   const FitsReader& reader_;
   int unit_;
   std::int64_t rows_;
-  std::size_t camera_, star_, exposure_, flags_;
+  std::size_t camera_, star_, exposure_, length_, flags_;
 };
 
 }  // namespace

@@ -1,9 +1,9 @@
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <limits>
 #include <map>
 #include <string>
-#include <tuple>
 
 #include "astroid/core/error.hpp"
 #include "astroid/core/fits.hpp"
@@ -35,11 +35,18 @@ int longest_id(std::span<const LightCurveStar> stars) {
 
 struct LightCurveWriter::Impl {
   // The sum over cameras of one block, until the last camera has come.
-  struct Block {
+  struct Mean {
     int next_camera = 1;
     std::size_t count = 0;
     std::vector<float> sum;
     std::vector<std::uint8_t> good;  // cameras with a finite value
+  };
+  // The block that is being written; camera 0: none.
+  struct Block {
+    int camera = 0;
+    std::int64_t first = 0;
+    std::size_t count = 0;
+    Mean* mean = nullptr;  // with several cameras
   };
 
   Impl(const std::string& path, const LightCurveHeader& h, std::span<const LightCurveStar> s)
@@ -114,46 +121,74 @@ struct LightCurveWriter::Impl {
     const int unit = empty ? writer.begin_image(FitsNumber::kFloat32, {}, name)
                            : writer.begin_large_image(FitsNumber::kFloat32, {header.exposures, stars}, name);
     writer.card({"BUNIT", "", "relative deviation from REFERENCE"});
+    if (!empty) writer.end_large_header();
     return unit;
   }
 
-  void write_image(int unit, std::int64_t first, std::size_t count, std::span<const float> values) {
-    writer.select(unit);
-    for (std::int64_t star = 0; star < stars; ++star)
-      writer.write_pixels(star * header.exposures + first,
-                          values.subspan(static_cast<std::size_t>(star) * count, count));
+  void begin_block(int camera, std::int64_t first, std::size_t count) {
+    ASTROID_CHECK_EQ(block.camera, 0);
+    ASTROID_CHECK_LE(1, camera);
+    ASTROID_CHECK_LE(camera, header.cameras);
+    ASTROID_CHECK_LE(0, first);
+    ASTROID_CHECK_LE(first + static_cast<std::int64_t>(count), header.exposures);
+    std::int64_t& done = written[static_cast<std::size_t>(camera - 1)];
+    ASTROID_CHECK_LE(done + static_cast<std::int64_t>(count), header.exposures);
+    Block next{.camera = camera, .first = first, .count = count, .mean = nullptr};
+    if (header.cameras > 1 && count > 0) {
+      Mean& mean = means[first];
+      if (camera == mean.next_camera && camera == 1) {
+        mean.count = count;
+        mean.sum.assign(count * static_cast<std::size_t>(stars), 0.0F);
+        mean.good.assign(mean.sum.size(), 0);
+      }
+      ASTROID_CHECK_EQ(camera, mean.next_camera);
+      ASTROID_CHECK_EQ(count, mean.count);
+      next.mean = &mean;
+    }
+    block = next;
+    stars_written = 0;
+    done += static_cast<std::int64_t>(count);
   }
 
-  void add_to_mean(int camera, std::int64_t first, std::size_t count, std::span<const float> deviation) {
-    Block& block = blocks[first];
-    ASTROID_CHECK_EQ(camera, block.next_camera);
-    if (camera == 1) {
-      block.count = count;
-      block.sum.assign(deviation.size(), 0.0F);
-      block.good.assign(deviation.size(), 0);
+  void write_star(std::size_t star, std::span<const float> deviation) {
+    ASTROID_CHECK_LE(1, block.camera);
+    ASTROID_CHECK_LT(star, static_cast<std::size_t>(stars));
+    ASTROID_CHECK_EQ(deviation.size(), block.count);
+    if (block.count > 0) {
+      const std::int64_t at = static_cast<std::int64_t>(star) * header.exposures + block.first;
+      writer.write_large_pixels(images[static_cast<std::size_t>(block.camera - 1)], at, deviation);
+      if (block.mean != nullptr) add_to_mean(*block.mean, star, deviation, at);
     }
-    ASTROID_CHECK_EQ(count, block.count);
-    for (std::size_t i = 0; i < deviation.size(); ++i) {
-      if (!std::isfinite(deviation[i])) continue;
-      block.sum[i] += deviation[i];
-      ++block.good[i];
+    ++stars_written;
+  }
+
+  void add_to_mean(Mean& mean, std::size_t star, std::span<const float> deviation, std::int64_t at) const {
+    const std::span<float> sum = std::span(mean.sum).subspan(star * block.count, block.count);
+    const std::span<std::uint8_t> good = std::span(mean.good).subspan(star * block.count, block.count);
+    for (std::size_t k = 0; k < sum.size(); ++k) {
+      if (!std::isfinite(deviation[k])) continue;
+      sum[k] += deviation[k];
+      ++good[k];
     }
-    ++block.next_camera;
-    if (camera < header.cameras) return;
-    for (std::size_t i = 0; i < block.sum.size(); ++i)
-      block.sum[i] = block.good[i] > 0 ? block.sum[i] / static_cast<float>(block.good[i])
-                                       : std::numeric_limits<float>::quiet_NaN();
-    write_image(combined, first, count, block.sum);
-    blocks.erase(first);
+    if (block.camera < header.cameras) return;
+    for (std::size_t k = 0; k < sum.size(); ++k)
+      sum[k] = good[k] > 0 ? sum[k] / static_cast<float>(good[k]) : std::numeric_limits<float>::quiet_NaN();
+    writer.write_large_pixels(combined, at, sum);
+  }
+
+  void end_block() {
+    ASTROID_CHECK_LE(1, block.camera);
+    ASTROID_CHECK_EQ(stars_written.load(), stars);
+    if (block.mean != nullptr && ++block.mean->next_camera > header.cameras) means.erase(block.first);
+    block = {};
   }
 
   void write_flags() {
-    std::sort(flags.begin(), flags.end(), [](const LightCurveFlag& a, const LightCurveFlag& b) {
-      return std::tie(a.camera, a.star, a.exposure) < std::tie(b.camera, b.star, b.exposure);
-    });
+    join_flags(flags);
     writer.begin_table({{"CAMERA", FitsNumber::kInt32},
                         {"STAR", FitsNumber::kInt32},
                         {"CADENCENO", FitsNumber::kInt64},
+                        {"EXPOSURES", FitsNumber::kInt64},
                         {"FLAGS", FitsNumber::kInt32}},
                        "FLAGS", static_cast<std::int64_t>(flags.size()));
     for (std::size_t first = 0; first < flags.size(); first += static_cast<std::size_t>(kRowsAtOnce)) {
@@ -161,18 +196,21 @@ struct LightCurveWriter::Impl {
       std::vector<std::int32_t> camera;
       std::vector<std::int32_t> star;
       std::vector<std::int64_t> exposure;
+      std::vector<std::int64_t> exposures;
       std::vector<std::int32_t> bits;
       for (std::size_t i = first; i < last; ++i) {
         camera.push_back(static_cast<std::int32_t>(flags[i].camera));
         star.push_back(static_cast<std::int32_t>(flags[i].star));
         exposure.push_back(flags[i].exposure);
+        exposures.push_back(flags[i].exposures);
         bits.push_back(static_cast<std::int32_t>(flags[i].flags));
       }
       const auto row = static_cast<std::int64_t>(first);
       writer.write_column(0, row, camera);
       writer.write_column(1, row, star);
       writer.write_column(2, row, exposure);
-      writer.write_column(3, row, bits);
+      writer.write_column(3, row, exposures);
+      writer.write_column(4, row, bits);
     }
   }
 
@@ -181,8 +219,10 @@ struct LightCurveWriter::Impl {
   FitsWriter writer;
   std::vector<int> images;  // unit of each camera
   int combined = 0;
-  std::vector<std::int64_t> written;  // exposures of each camera
-  std::map<std::int64_t, Block> blocks;
+  std::vector<std::int64_t> written;   // exposures of each camera
+  std::map<std::int64_t, Mean> means;  // by first exposure
+  Block block;
+  std::atomic<std::int64_t> stars_written{0};  // of the block
   std::vector<LightCurveFlag> flags;
 };
 
@@ -194,19 +234,23 @@ LightCurveWriter::~LightCurveWriter() = default;
 
 void LightCurveWriter::write_block(int camera, std::int64_t first, std::size_t count,
                                    std::span<const float> deviation) {
-  Impl& impl = *impl_;
-  ASTROID_CHECK_LE(1, camera);
-  ASTROID_CHECK_LE(camera, impl.header.cameras);
-  ASTROID_CHECK_LE(0, first);
-  ASTROID_CHECK_LE(first + static_cast<std::int64_t>(count), impl.header.exposures);
-  ASTROID_CHECK_EQ(deviation.size(), count * static_cast<std::size_t>(impl.stars));
-  if (count == 0) return;
-  std::int64_t& written = impl.written[static_cast<std::size_t>(camera - 1)];
-  written += static_cast<std::int64_t>(count);
-  ASTROID_CHECK_LE(written, impl.header.exposures);
-  if (impl.stars == 0) return;
-  impl.write_image(impl.images[static_cast<std::size_t>(camera - 1)], first, count, deviation);
-  if (impl.header.cameras > 1) impl.add_to_mean(camera, first, count, deviation);
+  const auto stars = static_cast<std::size_t>(impl_->stars);
+  ASTROID_CHECK_EQ(deviation.size(), count * stars);
+  begin_block(camera, first, count);
+  for (std::size_t star = 0; star < stars; ++star) write_star(star, deviation.subspan(star * count, count));
+  end_block();
+}
+
+void LightCurveWriter::begin_block(int camera, std::int64_t first, std::size_t count) {
+  impl_->begin_block(camera, first, count);
+}
+
+void LightCurveWriter::write_star(std::size_t star, std::span<const float> deviation) {
+  impl_->write_star(star, deviation);
+}
+
+void LightCurveWriter::end_block() {
+  impl_->end_block();
 }
 
 void LightCurveWriter::add_flags(std::span<const LightCurveFlag> flags) {

@@ -65,6 +65,37 @@ void BM_ApplyEstimators(benchmark::State& state) {
 }
 BENCHMARK(BM_ApplyEstimators)->Apply(methods)->Unit(benchmark::kMicrosecond);
 
+/// The same by batches of `frames`; as in any real field a few hundred pixels around bright stars are saturated.
+void BM_ApplyBatch(benchmark::State& state) {
+  const auto layout = test::full_frame(kSide, kSide);
+  const test::GroundScene& scene = crowded_field();
+  PhotometrySettings settings;
+  settings.background = static_cast<BackgroundMethod>(state.range(0));
+  const EstimatorSet set(build_estimators(*layout, scene.model(), settings), scene.gain, scene.bias);
+  std::vector<Frame> frames;
+  for (std::int64_t f = 0; f < state.range(1); ++f) {
+    frames.push_back(test::empty_frame(layout, scene.gain, scene.bias));
+    for (std::size_t star = 0; star < static_cast<std::size_t>(state.range(2)); ++star)
+      for (std::size_t row = 0; row < 3; ++row)
+        for (std::size_t column = 0; column < 3; ++column)
+          frames.back().flags.pixels()[(star * 2201 + row * kSide + column) % layout->size()] = pixel_flag::kFullWell;
+  }
+  EstimatorSet::BatchScratch scratch;
+  double sum = 0.0;
+  for (auto _ : state)
+    set.apply_batch(frames, scratch, [&sum](std::size_t, std::span<const double> flux, std::span<const std::uint32_t>) {
+      sum += flux[0];
+    });
+  benchmark::DoNotOptimize(sum);
+  state.SetItemsProcessed(state.iterations() * kStars * state.range(1));
+}
+BENCHMARK(BM_ApplyBatch)
+    ->ArgNames({"background", "frames", "saturated stars"})
+    ->ArgsProduct({{static_cast<long>(BackgroundMethod::kKnown), static_cast<long>(BackgroundMethod::kLocal)},
+                   {4, 8, 16},
+                   {0, 30}})
+    ->Unit(benchmark::kMicrosecond);
+
 void BM_BackgroundMesh(benchmark::State& state) {
   const auto layout = test::full_frame(1024, 1024);
   Frame frame = test::empty_frame(layout);

@@ -1,21 +1,21 @@
 #include "astroid/pipeline/exposure_stream.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <cstddef>
-#include <limits>
-#include <mutex>
-#include <optional>
+#include <memory>
 #include <utility>
 
 #include "astroid/core/worker_pool.hpp"
-#include "astroid/photometry/background.hpp"
-#include "astroid/photometry/light_curves.hpp"
-#include "astroid/sim/simulator.hpp"
+#include "exposure_worker.hpp"
+#include "flux_block.hpp"
 #include "folders.hpp"
 #include "image_files.hpp"
+#include "series_stage.hpp"
+#include "stage_clock.hpp"
+#include "stream_sizes.hpp"
 
 namespace astroid {
 
@@ -27,47 +27,23 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// What one worker owns.
-struct Worker {
-  ExposureState state;
-  std::vector<double> flux;
-  std::vector<std::uint32_t> flags;
-  double simulate = 0.0, measure = 0.0, images = 0.0;
-  std::int64_t images_written = 0;
-};
-
-/// One block of exposures of one camera: [exposure][target] as measured, then [target][exposure].
-struct Block {
-  std::vector<float> by_exposure;
-  std::vector<float> by_target;
-  std::vector<std::uint32_t> flags;  // [exposure][target]
-  std::vector<double> lost;          // [exposure]
-  std::vector<std::int64_t> clipped;
-};
-
-/// Takes the mesh background out of a measured frame; written images keep theirs.
-void subtract_mesh(Frame& frame, const PhotometrySettings& settings) {
-  for (std::size_t r = 0; r < frame.pixels.layout().regions().size(); ++r) {
-    const BackgroundMap map(frame, r, {.cell = settings.mesh});
-    subtract_background(frame, r, map);
+/// What the fluxes of each target are relative to, e- per exposure.
+std::vector<double> reference_of(const std::vector<StarEstimator>& estimators) {
+  std::vector<double> reference;
+  reference.reserve(estimators.size());
+  for (const StarEstimator& e : estimators) {
+    // What the estimator expects; a target without light is measured against one electron.
+    const double expected = e.budget.target + e.budget.contaminants;
+    reference.push_back(expected > 0.0 ? expected : 1.0);
   }
+  return reference;
 }
 
-/// Exposures in a block: as many as keep a block of deviations below this size, at most a thousand or so (DESIGN: about
-/// 1024).
-constexpr std::size_t kBlockBytes = std::size_t{192} << 20;
-constexpr std::int64_t kLongestBlock = 1024;
-
-std::int64_t block_length(std::size_t targets) {
-  const std::size_t bytes_per_exposure =
-      std::max<std::size_t>(1, targets) * (2 * sizeof(float) + sizeof(std::uint32_t));
-  return std::clamp<std::int64_t>(static_cast<std::int64_t>(kBlockBytes / bytes_per_exposure), 16, kLongestBlock);
-}
-
-void transpose(const Block& block, std::size_t targets, std::size_t count, std::size_t first, std::size_t last,
-               std::vector<float>& out) {
-  for (std::size_t t = first; t < last; ++t)
-    for (std::size_t k = 0; k < count; ++k) out[t * count + k] = block.by_exposure[k * targets + t];
+std::vector<std::uint32_t> own_flags_of(const std::vector<StarEstimator>& estimators) {
+  std::vector<std::uint32_t> flags;
+  flags.reserve(estimators.size());
+  for (const StarEstimator& e : estimators) flags.push_back(e.flags);
+  return flags;
 }
 
 std::vector<LightCurveStar> light_curve_stars(const Scene& scene, const std::vector<StarEstimator>& estimators,
@@ -86,181 +62,152 @@ std::vector<LightCurveStar> light_curve_stars(const Scene& scene, const std::vec
   return stars;
 }
 
+/// photometry/lightcurves.fits, where the configuration asks for it.
+std::unique_ptr<LightCurveWriter> open_light_curves(const Scene& scene, const Plan& plan,
+                                                    const std::vector<StarEstimator>& estimators,
+                                                    const std::vector<double>& reference,
+                                                    const std::filesystem::path& folder) {
+  const Mission& mission = scene.mission();
+  if (estimators.empty() || folder.empty() || mission.output.light_curves == LightCurveOutput::kNone) return nullptr;
+  create_folder(folder / "photometry");
+  return std::make_unique<LightCurveWriter>((folder / "photometry" / "lightcurves.fits").string(),
+                                            LightCurveHeader{.exposures = mission.simulation.exposures,
+                                                             .cameras = mission.telescope.simulated_cameras,
+                                                             .start_mjd = mission.simulation.start_mjd,
+                                                             .cycle = mission.simulation.cycle.value(),
+                                                             .exposure_time = mission.simulation.exposure_time.value(),
+                                                             .history = history_of(plan, scene)},
+                                            light_curve_stars(scene, estimators, reference));
+}
+
+std::vector<Simulator> make_simulators(const std::shared_ptr<const Scene>& scene,
+                                       const std::shared_ptr<const Plan>& plan) {
+  const int cameras = scene->mission().telescope.simulated_cameras;
+  const std::shared_ptr<const AttitudeSeries> attitude = make_attitude_series(*scene, *plan);
+  std::vector<Simulator> simulators;
+  simulators.reserve(static_cast<std::size_t>(cameras));
+  for (int camera = 0; camera < cameras; ++camera) simulators.emplace_back(scene, plan, camera, attitude);
+  return simulators;
+}
+
+/// The loop: while workers fill one block with exposures, they also empty the block before it star by star.
+class Stream {
+ public:
+  Stream(const StreamInput& input, SeriesStage& series, int threads, std::int64_t block_length,
+         std::size_t batch_length)
+      : series_(series),
+        threads_(threads),
+        batch_length_(batch_length),
+        blocks_{FluxBlock(input.estimators.size(), static_cast<std::size_t>(block_length)),
+                FluxBlock(input.estimators.size(), static_cast<std::size_t>(block_length))},
+        lost_electrons_(input.simulators.size()) {
+    workers_.reserve(static_cast<std::size_t>(threads));
+    for (int i = 0; i < threads; ++i) workers_.emplace_back(input, batch_length);
+  }
+
+  /// Makes and measures exposures of one camera, and finishes those of the call before.  @param count  0: only finishes
+  void pass(int camera, std::int64_t first, std::size_t count) {
+    FluxBlock& done = blocks_[passes_ % 2];
+    FluxBlock& next = blocks_[(passes_ + 1) % 2];
+    ++passes_;
+    next.begin(camera, first, count);
+    series_.begin(done);
+    const std::size_t tasks = series_.tasks(done);
+    const std::vector<Batch> batches = divide_into_batches(count, batch_length_, threads_);
+    parallel_for(threads_, tasks + batches.size(), [&](std::size_t worker, std::size_t item) {
+      if (item < tasks)
+        series_.run(item, done, workers_[worker].seconds());
+      else
+        workers_[worker].run(batches[item - tasks], next, exposures_done_);
+    });
+    series_.end(done, flags_);
+    flags_.clear();
+    for (ExposureWorker& worker : workers_) worker.take_flags(flags_);
+    for (const double lost : next.lost()) lost_electrons_[static_cast<std::size_t>(camera)] += lost;
+    for (const std::int64_t clipped : next.clipped()) clipped_pixels_ += clipped;
+  }
+
+  /// Adds what the workers counted to a result.
+  void add_to(StreamResult& result, const Plan& plan) {
+    for (const double lost : lost_electrons_) result.lost_electrons += lost;
+    result.clipped_pixels = clipped_pixels_;
+    for (ExposureWorker& worker : workers_) {
+      result.timings.simulate += worker.seconds().simulate;
+      result.timings.measure += worker.seconds().measure;
+      result.timings.images += worker.seconds().images;
+      result.timings.statistics += worker.seconds().statistics;
+      result.timings.light_curves += worker.seconds().light_curves;
+      result.images_written += worker.images_written();
+      if (worker.first_frame().size() > 0) result.first_frame = std::move(worker.first_frame());
+    }
+    for (std::size_t i = 0; i < plan.effects.size(); ++i) {
+      if (!plan.effects[i].need.needed) continue;
+      double seconds = 0.0;
+      for (const ExposureWorker& worker : workers_) seconds += worker.state().effect_seconds[i];
+      result.effect_seconds.emplace_back(plan.effects[i].effect->spec().name, seconds);
+    }
+  }
+
+ private:
+  SeriesStage& series_;
+  int threads_;
+  std::size_t batch_length_;
+  std::array<FluxBlock, 2> blocks_;
+  std::size_t passes_ = 0;
+  std::vector<ExposureWorker> workers_;
+  std::vector<LightCurveFlag> flags_;  // of the block that was filled last
+  std::atomic<std::int64_t> exposures_done_{0};
+  std::vector<double> lost_electrons_;  // by camera, so that their order does not depend on the blocks
+  std::int64_t clipped_pixels_ = 0;
+};
+
 }  // namespace
 
 StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Plan>& plan,
                               const std::vector<StarEstimator>& estimators, const StreamOptions& options) {
   const Clock::time_point begin = Clock::now();
   const Mission& mission = scene->mission();
-  const int cameras = mission.telescope.simulated_cameras;
   const std::int64_t exposures = mission.simulation.exposures;
-  const std::size_t targets = estimators.size();
-  const bool measures = targets > 0;
+  const int cameras = mission.telescope.simulated_cameras;
+  const int threads = options.threads > 0 ? options.threads : available_threads();
 
   StreamResult result;
-  result.reference.reserve(targets);
-  for (const StarEstimator& e : estimators) {
-    // What the estimator expects; a target without light is measured against one electron.
-    const double expected = e.budget.target + e.budget.contaminants;
-    result.reference.push_back(expected > 0.0 ? expected : 1.0);
-  }
-  result.flags.assign(targets, 0);
-  result.flagged_share.assign(targets, 0.0);
-  std::vector<std::int64_t> flagged(targets, 0);
-
-  std::vector<Simulator> simulators;
-  simulators.reserve(static_cast<std::size_t>(cameras));
-  const std::shared_ptr<const AttitudeSeries> attitude = make_attitude_series(*scene, *plan);
-  for (int camera = 0; camera < cameras; ++camera) simulators.emplace_back(scene, plan, camera, attitude);
+  result.reference = reference_of(estimators);
+  const std::vector<std::uint32_t> own_flags = own_flags_of(estimators);
+  const std::vector<Simulator> simulators = make_simulators(scene, plan);
   const EstimatorSet set(estimators, mission.ccd.gain, mission.ccd.bias);
-  SeriesStatistics statistics(targets,
-                              std::max<std::int64_t>(2, static_cast<std::int64_t>(scene->summary().exposures_per_bin)));
-  std::optional<LightCurveWriter> light_curves;
-  if (measures && !options.folder.empty() && mission.output.light_curves != LightCurveOutput::kNone) {
-    create_folder(options.folder / "photometry");
-    light_curves.emplace((options.folder / "photometry" / "lightcurves.fits").string(),
-                         LightCurveHeader{.exposures = exposures,
-                                          .cameras = cameras,
-                                          .start_mjd = mission.simulation.start_mjd,
-                                          .cycle = mission.simulation.cycle.value(),
-                                          .exposure_time = mission.simulation.exposure_time.value(),
-                                          .history = history_of(*plan, *scene)},
-                         light_curve_stars(*scene, estimators, result.reference));
-  }
   const ImageFiles images(*scene, *plan, options.folder);
+  const std::unique_ptr<LightCurveWriter> light_curves =
+      open_light_curves(*scene, *plan, estimators, result.reference, options.folder);
 
-  const int threads = options.threads > 0 ? options.threads : available_threads();
-  std::vector<Worker> workers(static_cast<std::size_t>(threads));
-  for (Worker& worker : workers) {
-    worker.state = simulators.front().make_state();
-    worker.flux.resize(targets);
-    worker.flags.resize(targets);
-  }
+  const std::int64_t length = block_length(exposures, estimators.size(), cameras, options.longest_block);
+  const std::size_t batch = estimators.empty() ? 1 : batch_length(scene->layout()->size());
+  const std::int64_t per_bin = std::max<std::int64_t>(2, static_cast<std::int64_t>(scene->summary().exposures_per_bin));
+  SeriesStage series(own_flags, cameras, per_bin, static_cast<std::size_t>(length), light_curves.get());
+  Stream stream({.mission = mission,
+                 .simulators = simulators,
+                 .estimators = set,
+                 .reference = result.reference,
+                 .own_flags = own_flags,
+                 .images = images,
+                 .progress = options.progress},
+                series, threads, length, batch);
   result.timings.prepare = seconds_since(begin);
 
-  const std::int64_t length = std::min(exposures, measures ? block_length(targets) : kLongestBlock);
-  const auto block_size = static_cast<std::size_t>(length);
-  Block block;
-  block.by_exposure.resize(block_size * targets);
-  block.by_target.resize(block_size * targets);
-  block.flags.resize(block_size * targets);
-  block.lost.resize(block_size);
-  block.clipped.resize(block_size);
-  std::vector<double> mean_of_cameras(cameras > 1 ? block_size * targets : 0);
-  std::vector<float> combined(cameras > 1 ? block_size * targets : 0);
-  std::atomic<std::int64_t> done{0};
-
-  for (std::int64_t first = 0; first < exposures; first += length) {
-    const auto count = static_cast<std::size_t>(std::min(length, exposures - first));
-    std::ranges::fill(mean_of_cameras, 0.0);
-    for (int camera = 0; camera < cameras; ++camera) {
-      const Simulator& simulator = simulators[static_cast<std::size_t>(camera)];
-      parallel_for(threads, count, [&](std::size_t worker_index, std::size_t k) {
-        Worker& worker = workers[worker_index];
-        const std::int64_t exposure = first + static_cast<std::int64_t>(k);
-        Clock::time_point start = Clock::now();
-        if (images.dumps(camera, exposure)) {
-          simulator.simulate(exposure, worker.state, images.step_writer(camera, exposure));
-        } else {
-          simulator.simulate(exposure, worker.state);
-        }
-        worker.simulate += seconds_since(start);
-        block.lost[k] = worker.state.lost_electrons;
-        block.clipped[k] = worker.state.clipped_pixels;
-        if (images.writes(camera, exposure)) {
-          start = Clock::now();
-          images.write(worker.state.frame);
-          ++worker.images_written;
-          worker.images += seconds_since(start);
-        }
-        if (camera == 0 && exposure == 0) result.first_frame = largest_region(worker.state.frame);
-        if (measures) {
-          start = Clock::now();
-          if (mission.photometry.background == BackgroundMethod::kMesh)
-            subtract_mesh(worker.state.frame, mission.photometry);
-          set.apply(worker.state.frame, worker.flux, worker.flags);
-          for (std::size_t t = 0; t < targets; ++t) {
-            block.by_exposure[k * targets + t] = static_cast<float>(worker.flux[t] / result.reference[t] - 1.0);
-            block.flags[k * targets + t] = worker.flags[t];
-          }
-          worker.measure += seconds_since(start);
-        }
-        const std::int64_t n = ++done;
-        if (options.progress) options.progress(n, exposures * cameras);
-      });
-      for (std::size_t k = 0; k < count; ++k) {
-        result.lost_electrons += block.lost[k];
-        result.clipped_pixels += block.clipped[k];
-      }
-      if (!measures) continue;
-
-      // From here on star by star: every star belongs to one worker, so no order depends on the threads.
-      const Clock::time_point start = Clock::now();
-      constexpr std::size_t kStarsPerTask = 256;
-      const std::size_t tasks = (targets + kStarsPerTask - 1) / kStarsPerTask;
-      parallel_for(threads, tasks, [&](std::size_t /*worker*/, std::size_t task) {
-        const std::size_t begin_star = task * kStarsPerTask;
-        const std::size_t end_star = std::min(targets, begin_star + kStarsPerTask);
-        transpose(block, targets, count, begin_star, end_star, block.by_target);
-        for (std::size_t t = begin_star; t < end_star; ++t) {
-          for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t flag = block.flags[k * targets + t];
-            result.flags[t] |= flag;
-            flagged[t] += flag != 0 ? 1 : 0;
-          }
-          const std::span<const float> series(&block.by_target[t * count], count);
-          if (cameras == 1) {
-            statistics.add(t, first, series);
-            continue;
-          }
-          for (std::size_t k = 0; k < count; ++k)
-            mean_of_cameras[t * count + k] += static_cast<double>(series[k]) / cameras;
-          if (camera + 1 < cameras) continue;
-          for (std::size_t k = 0; k < count; ++k)
-            combined[t * count + k] = static_cast<float>(mean_of_cameras[t * count + k]);
-          statistics.add(t, first, std::span<const float>(&combined[t * count], count));
-        }
-      });
-      result.timings.statistics += seconds_since(start);
-      if (light_curves) {
-        const Clock::time_point write_start = Clock::now();
-        light_curves->write_block(camera + 1, first, count, std::span(block.by_target).first(count * targets));
-        std::vector<LightCurveFlag> set_flags;
-        for (std::size_t k = 0; k < count; ++k)
-          for (std::size_t t = 0; t < targets; ++t) {
-            // What holds for every exposure stands in the table of stars.
-            const std::uint32_t flag = block.flags[k * targets + t] & ~estimators[t].flags;
-            if (flag != 0)
-              set_flags.push_back({.camera = static_cast<std::uint32_t>(camera + 1),
-                                   .star = static_cast<std::uint32_t>(t),
-                                   .exposure = first + static_cast<std::int64_t>(k),
-                                   .flags = flag});
-          }
-        light_curves->add_flags(set_flags);
-        result.timings.light_curves += seconds_since(write_start);
-      }
-    }
-  }
+  for (std::int64_t first = 0; first < exposures; first += length)
+    for (int camera = 0; camera < cameras; ++camera)
+      stream.pass(camera, first, static_cast<std::size_t>(std::min(length, exposures - first)));
+  stream.pass(0, exposures, 0);
   if (light_curves) {
-    const Clock::time_point start = Clock::now();
+    StageClock clock;
     light_curves->commit();
-    result.timings.light_curves += seconds_since(start);
+    clock.charge(result.timings.light_curves);
   }
-  result.series = statistics.summaries();
-  for (std::size_t t = 0; t < targets; ++t)
-    result.flagged_share[t] = static_cast<double>(flagged[t]) / static_cast<double>(exposures * cameras);
-  for (const Worker& worker : workers) {
-    result.timings.simulate += worker.simulate;
-    result.timings.measure += worker.measure;
-    result.timings.images += worker.images;
-    result.images_written += worker.images_written;
-  }
-  for (std::size_t i = 0; i < plan->effects.size(); ++i) {
-    if (!plan->effects[i].need.needed) continue;
-    double seconds = 0.0;
-    for (const Worker& worker : workers) seconds += worker.state.effect_seconds[i];
-    result.effect_seconds.emplace_back(plan->effects[i].effect->spec().name, seconds);
-  }
+
+  result.series = series.summaries();
+  result.flags = series.flags();
+  result.flagged_share = series.flagged_share();
+  stream.add_to(result, *plan);
   result.timings.wall = seconds_since(begin);
   return result;
 }

@@ -194,6 +194,47 @@ TEST(Fits, ImagesThatGrowTogetherAreWrittenInBlocks) {
   EXPECT_THAT(reader.read_integers(4, 0), ElementsAre(0, 1024, 2048, 3072, 4096));
 }
 
+TEST(Fits, LargeImagesAreWrittenByThreadsAtATime) {
+  const test::TemporaryFolder folder;
+  const auto path = folder.path() / "large.fits";
+  constexpr std::int64_t kRows = 64;
+  constexpr std::int64_t kColumns = 1000;
+  constexpr std::int64_t kThreads = 4;
+  FitsWriter writer(path);
+  const int first = writer.begin_large_image(FitsNumber::kFloat32, {kColumns, kRows}, "A");
+  EXPECT_THROW(writer.write_large_pixels(first, 0, std::vector<float>{1.0F}), BugError) << "the header has not ended";
+  writer.card({"GAIN", 25.0});
+  writer.end_large_header();
+  EXPECT_THROW(writer.card({"LATE", 1}), BugError);
+  const int second = writer.begin_large_image(FitsNumber::kFloat32, {kColumns, kRows}, "B");
+  writer.end_large_header();
+  const int doubles_unit = writer.begin_large_image(FitsNumber::kFloat64, {2, 2}, "C");
+  writer.end_large_header();
+  EXPECT_THROW(writer.write_large_pixels(doubles_unit, 0, std::vector<float>{1.0F}), BugError);
+  EXPECT_THROW(writer.write_large_pixels(first, kRows * kColumns - 1, std::vector<float>{1.0F, 2.0F}), BugError);
+  std::vector<std::jthread> threads;
+  for (std::int64_t thread = 0; thread < kThreads; ++thread)
+    threads.emplace_back([&, thread] {
+      std::vector<float> row(kColumns);
+      for (std::int64_t y = thread; y < kRows; y += kThreads)
+        for (const int unit : {first, second}) {
+          std::iota(row.begin(), row.end(), static_cast<float>(unit * 100000 + y * kColumns));
+          writer.write_large_pixels(unit, y * kColumns, row);
+        }
+    });
+  threads.clear();
+  writer.begin_table({{.name = "LAST", .number = FitsNumber::kInt32}}, "LAST");
+  EXPECT_THROW(writer.end_large_header(), BugError) << "a table";
+  writer.commit();
+  const FitsReader reader(path);
+  for (const int unit : {first, second}) {
+    const auto image = reader.read_image<float, unit::Relative>(unit);
+    for (int y = 0; y < kRows; ++y)
+      for (int x = 0; x < kColumns; ++x)
+        ASSERT_EQ(image.at(x, y), static_cast<float>(unit * 100000 + y * kColumns + x)) << x << " " << y;
+  }
+}
+
 TEST(Fits, LargeImagesKeepEveryFormatAndAreZeroWhereUnwritten) {
   const test::TemporaryFolder folder;
   const auto path = folder.path() / "large.fits";

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <thread>
+#include <tuple>
+#include <utility>
 
 #include "astroid/core/error.hpp"
 #include "astroid/test/temporary_folder.hpp"
@@ -155,6 +158,61 @@ TEST(LightCurves, FindTheFlagsOfAStarAmongMany) {
   EXPECT_THROW((void)reader.read("x", 4), InputError);
 }
 
+TEST(LightCurves, HaveTheSamePixelsWhenThreadsWriteTheStars) {
+  const test::TemporaryFolder folder;
+  const std::string whole_path = (folder.path() / "whole.fits").string();
+  const std::string path = (folder.path() / "threads.fits").string();
+  LightCurveWriter whole(whole_path, header_of(7, 2), three_stars());
+  LightCurveWriter by_star(path, header_of(7, 2), three_stars());
+  for (const auto& [first, count] : {std::pair{std::int64_t{0}, std::size_t{4}}, {4, 3}})
+    for (int camera = 1; camera <= 2; ++camera) {
+      write(whole, camera, first, count);
+      by_star.begin_block(camera, first, count);
+      std::vector<std::jthread> threads;
+      for (std::size_t star = 0; star < 3; ++star)
+        threads.emplace_back([&, star, first = first, count = count] {
+          std::vector<float> series;
+          for (std::size_t k = 0; k < count; ++k)
+            series.push_back(deviation(star, first + static_cast<std::int64_t>(k), camera));
+          by_star.write_star(star, series);
+        });
+      threads.clear();
+      by_star.end_block();
+    }
+  whole.commit();
+  by_star.commit();
+  for (const LightCurveStar& star : three_stars())
+    for (const int camera : {0, 1, 2})
+      EXPECT_EQ(read_light_curve(path, star.id, camera).flux, read_light_curve(whole_path, star.id, camera).flux);
+}
+
+TEST(LightCurves, JoinFlagsThatFollowOneAnother) {
+  // camera, star, exposure, flags, exposures
+  std::vector<LightCurveFlag> flags{{1, 1, 8, 2, 2},  {1, 1, 3, 2, 5}, {1, 1, 10, 4}, {2, 1, 11, 4},
+                                    {1, 1, 12, 4, 3}, {1, 0, 2, 2},    {1, 1, 2, 2}};
+  join_flags(flags);
+  const auto fields = [](const LightCurveFlag& f) {
+    return std::tuple(f.camera, f.star, f.exposure, f.flags, f.exposures);
+  };
+  ASSERT_EQ(flags.size(), 5U);
+  EXPECT_EQ(fields(flags[0]), std::tuple(1U, 0U, 2, 2U, 1));
+  EXPECT_EQ(fields(flags[1]), std::tuple(1U, 1U, 2, 2U, 8));
+  EXPECT_EQ(fields(flags[2]), std::tuple(1U, 1U, 10, 4U, 1));
+  EXPECT_EQ(fields(flags[3]), std::tuple(1U, 1U, 12, 4U, 3));
+  EXPECT_EQ(fields(flags[4]), std::tuple(2U, 1U, 11, 4U, 1));
+}
+
+TEST(LightCurves, ReadBackFlagsOfExposuresInARow) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "lightcurves.fits").string();
+  LightCurveWriter writer(path, header_of(6, 1), three_stars());
+  write(writer, 1, 0, 6);
+  writer.add_flags(std::vector<LightCurveFlag>{{1, 1, 3, 2, 2}, {1, 1, 1, 2, 2}, {1, 2, 5, 4}});
+  writer.commit();
+  EXPECT_EQ(read_light_curve(path, "x", 1).flags, (std::vector<std::uint32_t>{8, 10, 10, 10, 10, 8}));
+  EXPECT_EQ(read_light_curve(path, "tenth", 1).flags, (std::vector<std::uint32_t>{0, 0, 0, 0, 0, 4}));
+}
+
 TEST(LightCurves, LeaveNothingBehindWithoutCommit) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "lightcurves.fits").string();
@@ -180,6 +238,13 @@ TEST(LightCurves, RefuseBlocksThatDoNotFit) {
   EXPECT_THROW(writer.write_block(1, 3, 2, block), BugError);
   EXPECT_THROW(writer.write_block(1, 0, 1, block), BugError);
   EXPECT_THROW(writer.write_block(2, 0, 2, block), BugError) << "camera 1 of the block comes first";
+  EXPECT_THROW(writer.write_star(0, std::span(block).first(2)), BugError) << "no block was begun";
+  writer.begin_block(1, 0, 2);
+  EXPECT_THROW(writer.begin_block(1, 2, 2), BugError) << "the first block has not ended";
+  EXPECT_THROW(writer.write_star(3, std::span(block).first(2)), BugError);
+  EXPECT_THROW(writer.write_star(0, std::span(block).first(3)), BugError);
+  writer.write_star(0, std::span(block).first(2));
+  EXPECT_THROW(writer.end_block(), BugError) << "two stars are missing";
 }
 
 TEST(LightCurves, CanBeEmpty) {

@@ -43,7 +43,7 @@ struct FitsColumn {
 ///
 /// @throws EnvironmentError(path, cause) from every member function, a full disk included; without commit() nothing is
 /// left.
-/// @thread one thread at a time per writer; different writers in different threads.
+/// @thread one thread at a time per writer, but for write_large_pixels(); different writers in different threads.
 class FitsWriter {
  public:
   explicit FitsWriter(std::filesystem::path path);
@@ -62,6 +62,9 @@ class FitsWriter {
   /// go to the disk without detours. Pixels must have the type of `pixel`, and keywords come before the first of them
   /// (BugError).
   int begin_large_image(FitsNumber pixel, const std::vector<std::int64_t>& axes, const std::string& name = {});
+
+  /// Ends the header of the current large image; write_large_pixels() may then write to it.
+  void end_large_header();
 
   /// Begins a binary table, after an empty primary unit if it is the first. Rows are added as they are written;
   /// only the last unit should grow.  @returns its number, from 1.
@@ -83,6 +86,11 @@ class FitsWriter {
   void write_pixels(std::int64_t first, std::span<const std::int32_t> values);
   void write_pixels(std::int64_t first, std::span<const float> values);
   void write_pixels(std::int64_t first, std::span<const double> values);
+
+  /// The same for the large image `number`, which need not be the current one. @throws BugError before
+  /// end_large_header().
+  /// @thread several at a time, for pixels that do not overlap, while no other function of this writer runs.
+  void write_large_pixels(int number, std::int64_t first, std::span<const float> values) const;
 
   /// Writes a whole plane of the current image (plane 0 of a two-dimensional one).
   template <class T, class Unit>

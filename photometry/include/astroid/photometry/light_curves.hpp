@@ -5,7 +5,8 @@
 // 3 STARS      table: ID, MAG, X, Y, REFERENCE (e- per exposure, double), NSR (sigma / REFERENCE of one exposure),
 // FLAGS 4 CAMERA1 …  one image per camera: FLUX[star][exposure], float32 relative deviation from REFERENCE … COMBINED
 // the mean of the cameras; left out where there is only one, which then stands for it … FLAGS      table: CAMERA, STAR,
-// CADENCENO, FLAGS, where a flag is set that STARS does not have
+// CADENCENO, EXPOSURES, FLAGS, where flags are set that STARS does not have, in so
+//              many exposures in a row from CADENCENO on
 #pragma once
 
 #include <cstddef>
@@ -27,13 +28,18 @@ struct LightCurveStar {
   std::uint32_t flags = 0;  ///< measurement_flag bits that hold for every exposure
 };
 
-/// A flag of one measurement, beyond those that its star has in every exposure.
+/// Flags of consecutive measurements, beyond those that their star has in every exposure.
 struct LightCurveFlag {
-  std::uint32_t camera = 0;  ///< 1 … cameras
-  std::uint32_t star = 0;    ///< 0-based
-  std::int64_t exposure = 0;
-  std::uint32_t flags = 0;
+  std::uint32_t camera = 0;    ///< 1 … cameras
+  std::uint32_t star = 0;      ///< 0-based
+  std::int64_t exposure = 0;   ///< the first of them
+  std::uint32_t flags = 0;     ///< the same in all of them
+  std::int64_t exposures = 1;  ///< how many
 };
+
+/// Sorts flags by camera, star and exposure, and joins those that follow one another.
+/// @param flags  no two of the same measurement.
+void join_flags(std::vector<LightCurveFlag>& flags);
 
 struct LightCurveHeader {
   std::int64_t exposures = 0;
@@ -53,8 +59,9 @@ struct LightCurveHeader {
 
 /// Writes lightcurves.fits beside, in blocks; renames on commit(); without it nothing stays behind.
 ///
-/// Memory does not grow with the exposures: what is kept is, of several cameras, one block of their mean.
-/// @throws EnvironmentError(path, cause), from every member function.  @thread one thread at a time
+/// Memory does not grow with the exposures: what is kept is the flags, in a row, and, of several cameras, one block of
+/// their mean.
+/// @throws EnvironmentError(path, cause), from every member function.  @thread one at a time, but for write_star()
 class LightCurveWriter {
  public:
   LightCurveWriter(const std::string& path, const LightCurveHeader& header, std::span<const LightCurveStar> stars);
@@ -70,6 +77,15 @@ class LightCurveWriter {
   /// @param deviation  shape (stars, count): relative deviation from the star's reference; NaN where unmeasurable.
   /// @throws BugError when a block repeats, does not fit, or skips a camera.
   void write_block(int camera, std::int64_t first, std::size_t count, std::span<const float> deviation);
+
+  /// The same star by star: begin_block(), write_star() of every star in any order, end_block().
+  /// @throws BugError as write_block() does.
+  void begin_block(int camera, std::int64_t first, std::size_t count);
+  /// Writes the exposures of the block of one star.  @thread several at a time, each with other stars.
+  void write_star(std::size_t star, std::span<const float> deviation);
+  /// @throws BugError unless as many stars were written as there are.
+  void end_block();
+
   void add_flags(std::span<const LightCurveFlag> flags);
   /// @throws BugError unless every exposure of every camera was written.
   void commit();

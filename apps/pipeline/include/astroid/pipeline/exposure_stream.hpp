@@ -21,8 +21,9 @@ using Progress = std::function<void(std::int64_t done, std::int64_t all)>;
 
 struct StreamOptions {
   int threads = 1;
-  std::filesystem::path folder;  ///< products go to folder/images, folder/photometry, folder/steps; empty: nowhere
-  Progress progress;
+  std::filesystem::path folder;       ///< products go to folder/images, folder/photometry, folder/steps; empty: nowhere
+  Progress progress;                  ///< called by several threads at a time
+  std::int64_t longest_block = 1024;  ///< exposures held in memory at a time, at most; results do not depend on it
 };
 
 /// CPU seconds by stage, summed over the workers, and wall seconds of the whole.
@@ -52,8 +53,12 @@ struct StreamResult {
 
 /// Runs all exposures of all simulated cameras.
 ///
-/// Exposure-parallel: each worker owns one state. Fluxes collect in blocks of exposures that are then transposed and
-/// given to the statistics and the light-curve file star by star, so results are the same for any number of threads.
+/// Workers make and measure batches of exposures, each with a state and frames of its own. Fluxes collect in a block;
+/// while the next block is filled, the stars of the complete one go to the statistics and the light-curve file, every
+/// star by one worker, so results are the same for any number of threads and any division into batches and blocks.
+/// Memory: two blocks and, with several cameras, sums for their mean, 300 MB in all for up to 800,000 targets; and for
+/// each worker a state and the frames of a batch, 64 MB of them at most but at least one frame
+/// (test: StreamMemory.DoesNotGrowWithTheExposures).
 /// @param estimators  of the targets; empty: images only.
 /// @throws EnvironmentError when a product cannot be written.
 StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Plan>& plan,

@@ -1,0 +1,100 @@
+#include "exposure_worker.hpp"
+
+#include <utility>
+
+#include "astroid/photometry/background.hpp"
+#include "stage_clock.hpp"
+
+namespace astroid {
+
+namespace {
+
+/// Takes the mesh background out of a measured frame; written images keep theirs.
+void subtract_mesh(Frame& frame, const PhotometrySettings& settings) {
+  for (std::size_t r = 0; r < frame.pixels.layout().regions().size(); ++r) {
+    const BackgroundMap map(frame, r, {.cell = settings.mesh});
+    subtract_background(frame, r, map);
+  }
+}
+
+}  // namespace
+
+ExposureWorker::ExposureWorker(const StreamInput& input, std::size_t longest_batch)
+    : input_(input), state_(input.simulators.front().make_state()) {
+  frames_.reserve(longest_batch);
+  for (std::size_t i = 0; i < longest_batch; ++i) frames_.push_back(input.simulators.front().make_state().frame);
+}
+
+void ExposureWorker::run(Batch batch, FluxBlock& block, std::atomic<std::int64_t>& done) {
+  for (std::size_t i = 0; i < batch.count; ++i) {
+    simulate(block.camera(), block.first() + static_cast<std::int64_t>(batch.begin + i));
+    block.lost()[batch.begin + i] = state_.lost_electrons;
+    block.clipped()[batch.begin + i] = state_.clipped_pixels;
+    std::swap(state_.frame, frames_[i]);
+  }
+  if (input_.estimators.size() > 0) measure(batch, block);
+  if (!input_.progress) return;
+  const auto all = input_.mission.simulation.exposures * static_cast<std::int64_t>(input_.simulators.size());
+  for (std::size_t i = 0; i < batch.count; ++i) input_.progress(++done, all);
+}
+
+void ExposureWorker::simulate(int camera, std::int64_t exposure) {
+  StageClock clock;
+  const Simulator& simulator = input_.simulators[static_cast<std::size_t>(camera)];
+  if (input_.images.dumps(camera, exposure)) {
+    simulator.simulate(exposure, state_, input_.images.step_writer(camera, exposure));
+  } else {
+    simulator.simulate(exposure, state_);
+  }
+  clock.charge(seconds_.simulate);
+  if (input_.images.writes(camera, exposure)) {
+    input_.images.write(state_.frame);
+    ++images_written_;
+    clock.charge(seconds_.images);
+  }
+  if (camera == 0 && exposure == 0) first_frame_ = largest_region(state_.frame);
+}
+
+void ExposureWorker::measure(Batch batch, FluxBlock& block) {
+  StageClock clock;
+  const std::span<Frame> frames = std::span(frames_).first(batch.count);
+  if (input_.mission.photometry.background == BackgroundMethod::kMesh)
+    for (Frame& frame : frames) subtract_mesh(frame, input_.mission.photometry);
+  input_.estimators.apply_batch(
+      frames, scratch_, [&](std::size_t target, std::span<const double> flux, std::span<const std::uint32_t> flags) {
+        const double reference = input_.reference[target];
+        const std::span<float> series = block.deviation(target, batch.begin, batch.count);
+        for (std::size_t k = 0; k < flux.size(); ++k) series[k] = static_cast<float>(flux[k] / reference - 1.0);
+        note_flags(target, flags, block, batch.begin);
+      });
+  clock.charge(seconds_.measure);
+}
+
+void ExposureWorker::note_flags(std::size_t target, std::span<const std::uint32_t> flags, const FluxBlock& block,
+                                std::size_t begin) {
+  const std::uint32_t own = input_.own_flags[target];
+  std::uint32_t others = 0;
+  for (const std::uint32_t flag : flags) others |= flag ^ own;
+  if (others == 0) return;
+  for (std::size_t k = 0; k < flags.size(); ++k) {
+    // What holds for every exposure stands in the table of stars.
+    const std::uint32_t flag = flags[k] & ~own;
+    if (flag == 0) continue;
+    if (k > 0 && (flags[k - 1] & ~own) == flag) {
+      ++flags_.back().exposures;
+      continue;
+    }
+    flags_.push_back({.camera = static_cast<std::uint32_t>(block.camera() + 1),
+                      .star = static_cast<std::uint32_t>(target),
+                      .exposure = block.first() + static_cast<std::int64_t>(begin + k),
+                      .flags = flag,
+                      .exposures = 1});
+  }
+}
+
+void ExposureWorker::take_flags(std::vector<LightCurveFlag>& flags) {
+  flags.insert(flags.end(), flags_.begin(), flags_.end());
+  flags_.clear();
+}
+
+}  // namespace astroid

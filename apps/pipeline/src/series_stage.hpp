@@ -1,0 +1,54 @@
+// From fluxes to light curves: complete blocks go, star by star, to the statistics and the light-curve file.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "astroid/analysis/nsr_accumulator.hpp"
+#include "astroid/photometry/light_curves.hpp"
+#include "astroid/pipeline/exposure_stream.hpp"
+#include "flux_block.hpp"
+
+namespace astroid {
+
+/// Receives blocks: of all cameras in turn, then the next exposures.
+///
+/// Every star of a block belongs to one task, so no order of additions depends on the threads.
+class SeriesStage {
+ public:
+  /// @param own_flags     that hold for every exposure, of each target.
+  /// @param light_curves  the file; null: none.
+  SeriesStage(std::span<const std::uint32_t> own_flags, int cameras, std::int64_t exposures_per_bin,
+              std::size_t longest_block, LightCurveWriter* light_curves);
+
+  /// Begins a block; its tasks follow, in any order and several at a time.
+  void begin(const FluxBlock& block);
+  /// Tasks of a block: so many stars each; none for an empty block.
+  [[nodiscard]] std::size_t tasks(const FluxBlock& block) const;
+  void run(std::size_t task, const FluxBlock& block, StreamTimings& seconds);
+  /// Ends a block.  @param flags  those that targets have only in some of its exposures.
+  void end(const FluxBlock& block, std::vector<LightCurveFlag>& flags);
+
+  [[nodiscard]] std::vector<SeriesSummary> summaries() const { return statistics_.summaries(); }
+  /// measurement_flag bits seen in any exposure, of each target.
+  [[nodiscard]] const std::vector<std::uint32_t>& flags() const { return flags_; }
+  /// Share of the exposures so far that have any flag, of each target.
+  [[nodiscard]] std::vector<double> flagged_share() const;
+
+ private:
+  void add_to_mean(std::size_t target, const FluxBlock& block, std::span<const float> series);
+
+  std::vector<std::uint32_t> own_flags_;
+  std::size_t cameras_;
+  SeriesStatistics statistics_;
+  LightCurveWriter* light_curves_;
+  std::size_t longest_block_;
+  std::vector<double> mean_;  // of the cameras so far, [target][exposure]
+  std::vector<std::uint32_t> flags_;
+  std::vector<std::int64_t> flagged_;  // exposures with flags beyond own_flags_
+  std::int64_t exposures_ = 0;         // of all cameras
+};
+
+}  // namespace astroid
