@@ -257,10 +257,10 @@ void LightCurveWriter::add_flags(std::span<const LightCurveFlag> flags) {
   impl_->flags.insert(impl_->flags.end(), flags.begin(), flags.end());
 }
 
-void LightCurveWriter::commit() {
+void LightCurveWriter::commit(Durability durability) {
   for (const std::int64_t written : impl_->written) ASTROID_CHECK_EQ(written, impl_->header.exposures);
   impl_->write_flags();
-  impl_->writer.commit();
+  impl_->writer.commit(durability);
 }
 
 }  // namespace astroid

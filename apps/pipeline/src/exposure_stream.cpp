@@ -200,7 +200,7 @@ StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const s
   stream.pass(0, exposures, 0);
   if (light_curves) {
     StageClock clock;
-    light_curves->commit();
+    light_curves->commit(Durability::kWithFolder);  // of the run, which is synchronised as a whole
     clock.charge(result.timings.light_curves);
   }
 

@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "astroid/core/atomic_file.hpp"
+
 namespace astroid {
 
 /// A star of a light-curve file.
@@ -88,7 +90,7 @@ class LightCurveWriter {
 
   void add_flags(std::span<const LightCurveFlag> flags);
   /// @throws BugError unless every exposure of every camera was written.
-  void commit();
+  void commit(Durability durability = Durability::kAtOnce);
 
  private:
   struct Impl;
