@@ -14,20 +14,29 @@ HWY_BEFORE_NAMESPACE();
 namespace astroid::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-bool any_at_least_kernel(const double* values, std::size_t size, double limit) {
+std::size_t find_at_least_kernel(const double* values, std::size_t size, double limit, std::uint32_t* found) {
   const hn::ScalableTag<double> d;
   const auto bound = hn::Set(d, limit);
   constexpr std::size_t kAtOnce = 4 * HWY_LANES(double);
+  std::size_t count = 0;
   std::size_t i = 0;
-  for (; i + kAtOnce <= size; i += kAtOnce) {
+  const auto one_by_one = [&](std::size_t end) {
+    for (; i < end; ++i) {
+      found[count] = static_cast<std::uint32_t>(i);
+      count += values[i] >= limit ? 1U : 0U;
+    }
+  };
+  while (i + kAtOnce <= size) {
     auto any = hn::Ge(hn::LoadU(d, values + i), bound);
     for (std::size_t k = 1; k < 4; ++k)
       any = hn::Or(any, hn::Ge(hn::LoadU(d, values + i + k * HWY_LANES(double)), bound));
-    if (!hn::AllFalse(d, any)) return true;
+    if (HWY_LIKELY(hn::AllFalse(d, any)))
+      i += kAtOnce;
+    else
+      one_by_one(i + kAtOnce);
   }
-  for (; i < size; ++i)
-    if (values[i] >= limit) return true;
-  return false;
+  one_by_one(size);
+  return count;
 }
 
 void add_constant_kernel(double* values, std::size_t size, double constant) {
@@ -97,7 +106,7 @@ HWY_AFTER_NAMESPACE();
 namespace astroid {
 
 namespace {
-HWY_EXPORT(any_at_least_kernel);
+HWY_EXPORT(find_at_least_kernel);
 HWY_EXPORT(combine_maps_kernel);
 HWY_EXPORT(add_constant_kernel);
 HWY_EXPORT(add_values_kernel);
@@ -124,8 +133,9 @@ void scale_values(std::span<const double> values, double factor, std::span<doubl
   HWY_DYNAMIC_DISPATCH(scale_values_kernel)(values.data(), values.size(), factor, out.data());
 }
 
-bool any_at_least(std::span<const double> values, double limit) {
-  return HWY_DYNAMIC_DISPATCH(any_at_least_kernel)(values.data(), values.size(), limit);
+std::size_t find_at_least(std::span<const double> values, double limit, std::span<std::uint32_t> found) {
+  ASTROID_CHECK_LE(values.size(), found.size());
+  return HWY_DYNAMIC_DISPATCH(find_at_least_kernel)(values.data(), values.size(), limit, found.data());
 }
 
 void combine_maps(std::span<const double> base, std::span<const float* const> maps, std::span<const float> weights,
@@ -152,10 +162,11 @@ void reference::scale_values(std::span<const double> values, double factor, std:
   for (std::size_t i = 0; i < values.size(); ++i) out[i] = values[i] * factor;
 }
 
-bool reference::any_at_least(std::span<const double> values, double limit) {
-  for (const double value : values)
-    if (value >= limit) return true;
-  return false;
+std::size_t reference::find_at_least(std::span<const double> values, double limit, std::span<std::uint32_t> found) {
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (values[i] >= limit) found[count++] = static_cast<std::uint32_t>(i);
+  return count;
 }
 
 void reference::combine_maps(std::span<const double> base, std::span<const float* const> maps,

@@ -182,17 +182,24 @@ TEST_P(OnTarget, ArithmeticOnPlanesIsThatOfPlainLoops) {
     const std::vector<float> weights = {0.3F, -0.01F, 1e-5F, 0.7F, -0.2F};
     check([&](auto& v) { combine_maps(start, maps, weights, v); },
           [&](auto& v) { reference::combine_maps(start, maps, weights, v); }, "combine_maps");
-    for (const double limit : {-1.0, 1.0, 1e14, 1e16})
-      EXPECT_EQ(any_at_least(start, limit), reference::any_at_least(start, limit)) << size << ' ' << limit;
+    for (const double limit : {-1.0, 1.0, 1e14, 1e16}) {
+      std::vector<std::uint32_t> found(size);
+      std::vector<std::uint32_t> plain(size);
+      found.resize(find_at_least(start, limit, found));
+      plain.resize(reference::find_at_least(start, limit, plain));
+      EXPECT_EQ(found, plain) << size << ' ' << limit;
+    }
   }
 }
 
 TEST_P(OnTarget, FindsAValueWhereverItStands) {
+  std::vector<std::uint32_t> found(70);
   for (std::size_t place = 0; place < 70; ++place) {
     std::vector<double> values(70, std::nan(""));
-    EXPECT_FALSE(any_at_least(values, 5.0));
+    EXPECT_EQ(find_at_least(values, 5.0, found), 0U);
     values[place] = 5.0;
-    EXPECT_TRUE(any_at_least(values, 5.0)) << place;
+    ASSERT_EQ(find_at_least(values, 5.0, found), 1U) << place;
+    EXPECT_EQ(found[0], place);
   }
 }
 

@@ -81,6 +81,64 @@ TEST(Blooming, FlagsEveryPixelThatSpiltOrReceived) {
   EXPECT_DOUBLE_EQ(image.at(0, 1), 0.5);
 }
 
+/// Every pixel of every column, both ways: what bloom() does while it looks only where charge goes.
+double bloom_everywhere(Image<double, unit::SampledElectrons>& image, double full_well,
+                        Image<std::uint8_t, unit::Flags>& flags) {
+  double lost = 0.0;
+  for (int x = 0; x < image.nx(); ++x) {
+    std::vector<double> half_excess(static_cast<std::size_t>(image.ny()), 0.0);
+    bool any = false;
+    for (int y = 0; y < image.ny(); ++y) {
+      if (image.at(x, y) < full_well) continue;
+      any = true;
+      half_excess[static_cast<std::size_t>(y)] = 0.5 * (image.at(x, y) - full_well);
+      image.at(x, y) = full_well;
+      flags.at(x, y) = pixel_flag::kFullWell;
+    }
+    if (!any) continue;
+    double sum_of_ways = 0.0;
+    for (const bool up : {true, false}) {
+      double carried = 0.0;
+      for (int i = 0; i < image.ny(); ++i) {
+        const int y = up ? i : image.ny() - 1 - i;
+        double& pixel = image.at(x, y);
+        if (carried > 0.0) {
+          flags.at(x, y) = pixel_flag::kFullWell;
+          if (pixel < full_well) {
+            const double taken = std::min(full_well - pixel, carried);
+            pixel = taken == carried ? pixel + carried : full_well;
+            carried -= taken;
+          }
+        }
+        carried += half_excess[static_cast<std::size_t>(y)];
+      }
+      sum_of_ways += carried;
+    }
+    lost += sum_of_ways;
+  }
+  return lost;
+}
+
+TEST(Blooming, LooksOnlyWhereChargeGoesAndDoesTheSame) {
+  for (const double crowd : {0.002, 0.02, 0.3}) {
+    Image<double, unit::SampledElectrons> image(37, 211);
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      const double u = static_cast<double>((i * 2654435761U) % 1000003U) / 1000003.0;
+      const double v = static_cast<double>((i * 40503U + 7U) % 65537U) / 65537.0;
+      image.pixels()[i] = u < crowd ? 1e6 * (0.9 + 3.0 * v) : 9e5 * v;
+    }
+    image.at(3, 100) = 1e6;  // exactly full
+    Image<double, unit::SampledElectrons> plain(37, 211);
+    std::ranges::copy(image.pixels(), plain.pixels().begin());
+    Image<std::uint8_t, unit::Flags> flags(37, 211);
+    Image<std::uint8_t, unit::Flags> plain_flags(37, 211);
+    const ImageView<std::uint8_t, unit::Flags> view = flags.view();
+    EXPECT_EQ(bloom(image.view(), 1e6, &view), bloom_everywhere(plain, 1e6, plain_flags));
+    EXPECT_TRUE(std::ranges::equal(image.pixels(), plain.pixels())) << crowd;
+    EXPECT_TRUE(std::ranges::equal(flags.pixels(), plain_flags.pixels())) << crowd;
+  }
+}
+
 TEST(FullWellClip, CountsWhatItRemoves) {
   Image<double, unit::SampledElectrons> image(2, 1);
   image.at(0, 0) = 5.0;

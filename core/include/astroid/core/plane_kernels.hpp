@@ -4,12 +4,14 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace astroid {
 
-/// Whether any value is at or above the limit; a NaN is not.
-bool any_at_least(std::span<const double> values, double limit);
+/// Writes the indices of the values at or above the limit, in rising order; a NaN is not.
+/// @param found  [out] at least values.size() long.  @returns how many there are.
+std::size_t find_at_least(std::span<const double> values, double limit, std::span<std::uint32_t> found);
 
 /// values[i] += constant; values[i] += other[i]; values[i] *= other[i]; out[i] = values[i] * factor.
 void add_constant(std::span<double> values, double constant);
@@ -28,7 +30,7 @@ void add_constant(std::span<double> values, double constant);
 void add_values(std::span<double> values, std::span<const float> other);
 void multiply_values(std::span<double> values, std::span<const float> other);
 void scale_values(std::span<const double> values, double factor, std::span<double> out);
-bool any_at_least(std::span<const double> values, double limit);
+std::size_t find_at_least(std::span<const double> values, double limit, std::span<std::uint32_t> found);
 void combine_maps(std::span<const double> base, std::span<const float* const> maps, std::span<const float> weights,
                   std::span<double> out);
 }  // namespace reference
