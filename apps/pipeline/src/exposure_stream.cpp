@@ -140,12 +140,17 @@ class Stream {
       result.images_written += worker.images_written();
       if (worker.first_frame().size() > 0) result.first_frame = std::move(worker.first_frame());
     }
+    // Effects take wall time, too short for a CPU clock; their shares of it are put to the CPU time of all simulation.
+    double wall = 0.0;
     for (std::size_t i = 0; i < plan.effects.size(); ++i) {
       if (!plan.effects[i].need.needed) continue;
       double seconds = 0.0;
       for (const ExposureWorker& worker : workers_) seconds += worker.state().effect_seconds[i];
+      wall += seconds;
       result.effect_seconds.emplace_back(plan.effects[i].effect->spec().name, seconds);
     }
+    for (auto& [name, seconds] : result.effect_seconds)
+      seconds = wall > 0.0 ? seconds / wall * result.timings.simulate : 0.0;
   }
 
  private:

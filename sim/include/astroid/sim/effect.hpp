@@ -100,7 +100,7 @@ struct ExposureState {
   Frame frame;
   double lost_electrons = 0.0;         ///< charge that left through the edge of the frame or was clipped
   std::int64_t clipped_pixels = 0;     ///< by the ADC
-  std::vector<double> effect_seconds;  ///< of each effect of the plan, added up over the exposures this state has seen
+  std::vector<double> effect_seconds;  ///< wall time of each effect of the plan, over all exposures this state has seen
   std::vector<double> scratch;         ///< of the renderer; its content means nothing between calls
 };
 

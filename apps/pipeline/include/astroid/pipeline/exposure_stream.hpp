@@ -45,7 +45,7 @@ struct StreamResult {
   std::vector<double> flagged_share;    ///< share of exposures of a target with any flag
   Image<float, unit::Adu> first_frame;  ///< exposure 0 of camera 0, largest region
   StreamTimings timings;
-  std::vector<std::pair<std::string, double>> effect_seconds;  ///< CPU seconds of each effect that ran
+  std::vector<std::pair<std::string, double>> effect_seconds;  ///< share of each effect that ran in timings.simulate
   double lost_electrons = 0.0;
   std::int64_t clipped_pixels = 0;
   std::int64_t images_written = 0;
