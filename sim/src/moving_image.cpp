@@ -53,12 +53,17 @@ std::shared_ptr<const MovingImageCell> MovingImage::cell(const Attitude& centre,
   return cells_[key] = make_cell(centre, render);
 }
 
-MovingImage::Exposure MovingImage::exposure(std::span<const Attitude> steps, const RenderAt& render) const {
-  const Attitude centre = cell_centre(polynomial_, attitude_moments(steps).mean);
-  Exposure exposure{.cell = cell(centre, render), .weights = {}};
-  const std::vector<double> terms = mean_of_terms(polynomial_, centre, steps);
-  for (std::size_t t = 1; t < terms.size(); ++t) exposure.weights.push_back(static_cast<float>(terms[t]));
-  return exposure;
+std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::span<const Attitude> attitudes) {
+  const Attitude centre = cell_centre(polynomial, attitude_moments(attitudes).mean);
+  const std::vector<double> terms = mean_of_terms(polynomial, centre, attitudes);
+  std::vector<float> weights;
+  for (std::size_t t = 1; t < terms.size(); ++t) weights.push_back(static_cast<float>(terms[t]));
+  return weights;
+}
+
+MovingImage::Exposure MovingImage::exposure(const Attitude& mean, std::span<const float> weights,
+                                            const RenderAt& render) const {
+  return {.cell = cell(cell_centre(polynomial_, mean), render), .weights = weights};
 }
 
 void MovingImage::Exposure::recall(const Strip& strip, std::span<double> expected) const {

@@ -48,7 +48,7 @@ double renderings(const Plan& plan) {
 
 double stars_cost(const Plan& plan, const Scene& scene) {
   double nanoseconds = 0.0;
-  for (const auto& stars : star_lists(scene, plan.knobs, whole_strip(*scene.layout()).pieces, {}))
+  for (const auto& stars : star_lists(scene, plan.knobs, scene.layout()->regions(), {}))
     for (const RenderedStar& star : stars) nanoseconds += star_cost(plan, star.electrons);
   return nanoseconds * renderings(plan);
 }

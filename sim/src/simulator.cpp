@@ -51,7 +51,6 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
   const JitterTreatment treatment = plan.knobs.jitter;
   if (treatment == JitterTreatment::kNone) return series;
   series->steps = plan.knobs.attitude_steps;
-  const bool keep_steps = treatment == JitterTreatment::kSubSteps || treatment == JitterTreatment::kPolynomial;
   scene.attitude().for_each_exposure(
       scene.mission().simulation.exposures, series->steps, [&](std::span<const Attitude> exposure) {
         series->moments.push_back(attitude_moments(exposure));
@@ -59,7 +58,13 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
           series->farthest = {std::max(series->farthest.yaw, std::fabs(a.yaw)),
                               std::max(series->farthest.pitch, std::fabs(a.pitch)),
                               std::max(series->farthest.roll, std::fabs(a.roll))};
-        if (keep_steps) series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
+        // What grows with the exposures is kept small: steps only where nothing else will do.
+        if (treatment == JitterTreatment::kSubSteps)
+          series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
+        if (treatment == JitterTreatment::kPolynomial) {
+          const std::vector<float> weights = exposure_weights(plan.knobs.polynomial, exposure);
+          series->weights.insert(series->weights.end(), weights.begin(), weights.end());
+        }
       });
   return series;
 }
@@ -148,8 +153,10 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
     if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
       take({Act::kApply, i}, state, whole_);
-  if (moving_ != nullptr)
-    state.moving = moving_->exposure(state.attitude_steps, [this](const Attitude& a) { return render(a); });
+  if (moving_ == nullptr) return;
+  const std::size_t maps = plan_->knobs.polynomial.terms.size() - 1;
+  const auto weights = std::span(attitude_->weights).subspan(static_cast<std::size_t>(exposure) * maps, maps);
+  state.moving = moving_->exposure(state.attitude.mean, weights, [this](const Attitude& a) { return render(a); });
 }
 
 void Simulator::simulate(std::int64_t exposure, ExposureState& state, const StepObserver& observer) const {

@@ -27,7 +27,7 @@ double excursion(const AttitudeJacobian& j, const Attitude& farthest) {
 }  // namespace
 
 std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const PlanKnobs& knobs,
-                                                  std::span<const StripPiece> pieces, const Attitude& farthest) {
+                                                  std::span<const Rectangle> areas, const Attitude& farthest) {
   constexpr double kRounding = 1.0;  // px: of the stamp's edges
   std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
   std::vector<double> reach(scene.stars().size());
@@ -40,10 +40,9 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     cells[{cell(star.position.x), cell(star.position.y)}].push_back(static_cast<std::uint32_t>(i));
   }
   std::vector<std::vector<RenderedStar>> lists;
-  lists.reserve(pieces.size());
+  lists.reserve(areas.size());
   std::vector<std::uint32_t> found;
-  for (const StripPiece& piece : pieces) {
-    const Rectangle& area = piece.area;
+  for (const Rectangle& area : areas) {
     found.clear();
     for (int cy = cell(area.y0 - widest); cy <= cell(area.y1() + widest); ++cy)
       for (int cx = cell(area.x0 - widest); cx <= cell(area.x1() + widest); ++cx) {

@@ -10,10 +10,10 @@
 
 namespace astroid {
 
-/// For each piece the stars whose stamps can touch it, in catalogue order.
+/// For each area the stars whose stamps can touch it, in catalogue order.
 /// @param farthest  the largest attitude of each axis, arcsec, in absolute value.
-/// @complexity O(pieces × stars nearby), through a grid of cells.
+/// @complexity O(areas × stars nearby), through a grid of cells.
 std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const PlanKnobs& knobs,
-                                                  std::span<const StripPiece> pieces, const Attitude& farthest);
+                                                  std::span<const Rectangle> areas, const Attitude& farthest);
 
 }  // namespace astroid

@@ -5,9 +5,8 @@
 namespace astroid {
 
 Strip whole_strip(const PixelLayout& layout) {
-  Strip strip{.begin = 0, .end = layout.size(), .pieces = {}};
-  for (std::size_t r = 0; r < layout.regions().size(); ++r)
-    strip.pieces.push_back({layout.regions()[r], layout.offset(r)});
+  Strip strip;
+  for (const Rectangle& region : layout.regions()) strip.add(region);
   return strip;
 }
 
@@ -22,14 +21,13 @@ std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels) {
       const std::size_t room = pixels > strip.size() ? pixels - strip.size() : 0;
       const auto rows =
           static_cast<int>(std::clamp<std::size_t>(room / width, 1, static_cast<std::size_t>(region.y1() - y)));
-      const StripPiece piece{.area = {region.x0, y, region.nx, rows}, .begin = strip.end};
-      strip.pieces.push_back(piece);
-      strip.end += piece.area.size();
+      strip.add({region.x0, y, region.nx, rows});
       y += rows;
       if (strip.size() + width <= pixels) continue;
       const std::size_t next = strip.end;
       strips.push_back(std::move(strip));
-      strip = Strip{.begin = next, .end = next, .pieces = {}};
+      strip = {};
+      strip.begin = strip.end = next;
     }
   }
   if (strip.size() > 0) strips.push_back(std::move(strip));

@@ -43,12 +43,17 @@ HWY_INLINE constexpr std::size_t philox_counters() {
   return HWY_LANES(std::uint64_t);
 }
 
-/// Where counter i must stand among the lanes so that its four words come out in the order of the counters.
-HWY_INLINE constexpr std::size_t philox_lane(std::size_t i) {
-  return i < philox_counters() / 2 ? 2 * i : 2 * (i - philox_counters() / 2) + 1;
+/// Counters in their order to the lanes that philox() wants them in: the first half of them in the even lanes, the
+/// second half in the odd ones. Then their words come out in order.
+HWY_INLINE Vector64 in_philox_order(Vector64 counters) {
+  const Words64 d;
+  alignas(64) std::array<std::uint64_t, philox_counters()> order;
+  for (std::size_t lane = 0; lane < order.size(); ++lane) order[lane] = lane / 2 + lane % 2 * (order.size() / 2);
+  return hn::TableLookupLanes(counters, hn::SetTableIndices(d, order.data()));
 }
 
 /// Writes the words of the counters, four each, to 4 * philox_counters() places.
+/// @param c0 … c3  the words of the counters, in_philox_order().
 HWY_INLINE void philox(const PhiloxKeys& keys, Vector64 c0, Vector64 c1, Vector64 c2, Vector64 c3,
                        std::uint32_t* HWY_RESTRICT out) {
   const Words64 d;

@@ -28,25 +28,35 @@ inline std::uint32_t pixel_word(const RandomStream& stream, const PixelAddress& 
                       pixel_counter(address, address.x0))[static_cast<std::uint32_t>(address.x0) % kWordsOfCounter];
 }
 
-/// Pixels in a row. @throws BugError when the rows are not whole.
-inline std::size_t pixel_columns(const PixelRows& pixels, std::size_t count) {
-  if (count == 0) return 0;
-  ASTROID_CHECK_LT(0U, pixels.rows);
-  ASTROID_CHECK_EQ(count % pixels.rows, 0U);
-  return count / pixels.rows;
+/// @throws BugError when the areas have another number of pixels.
+inline void check_size(const PixelPlaces& pixels, std::size_t count) {
+  std::size_t size = 0;
+  for (const Rectangle& area : pixels.areas) size += area.size();
+  ASTROID_CHECK_EQ(size, count);
 }
 
-/// The address of pixel i of rows of nx pixels.
-inline PixelAddress pixel_at(const PixelRows& pixels, std::size_t nx, std::size_t i) {
-  PixelAddress address = pixels.address;
-  address.x0 += static_cast<std::int32_t>(i % nx);
-  address.y += static_cast<std::int32_t>(i / nx);
-  return address;
+/// The address of the pixel at (x, y).
+inline PixelAddress address_of(const PixelPlaces& pixels, int x, int y) {
+  return {.x0 = x, .y = y, .exposure = pixels.exposure, .read = pixels.read, .draw = pixels.draw};
 }
 
-inline void check_poisson(const PixelRows& pixels, std::span<const double> mean, std::span<double> counts) {
+/// The address of pixel i, counted through the areas.
+inline PixelAddress pixel_at(const PixelPlaces& pixels, std::size_t i) {
+  for (const Rectangle& area : pixels.areas) {
+    if (i >= area.size()) {
+      i -= area.size();
+      continue;
+    }
+    const auto width = static_cast<std::size_t>(area.nx);
+    return address_of(pixels, area.x0 + static_cast<int>(i % width), area.y0 + static_cast<int>(i / width));
+  }
+  throw BugError("a pixel beyond the areas");
+}
+
+inline void check_poisson(const PixelPlaces& pixels, std::span<const double> mean, std::span<double> counts) {
+  check_size(pixels, mean.size());
   ASTROID_CHECK_EQ(mean.size(), counts.size());
-  ASTROID_CHECK_LT(pixels.address.draw, std::numeric_limits<std::uint16_t>::max());
+  ASTROID_CHECK_LT(pixels.draw, std::numeric_limits<std::uint16_t>::max());
 }
 
 /// The count where the word `high` of this pixel may leave it open: the word of the next draw decides.

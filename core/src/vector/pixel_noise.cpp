@@ -24,8 +24,8 @@ namespace hn = hwy::HWY_NAMESPACE;
 constexpr std::size_t kSingles = HWY_LANES(float);
 constexpr std::size_t kDoubles = HWY_LANES(double);
 
-void words_kernel(const RandomStream& stream, const PixelRows& pixels, std::size_t columns, std::uint32_t* out) {
-  WordBlocks blocks(stream, pixels, columns);
+void words_kernel(const RandomStream& stream, const PixelPlaces& pixels, std::uint32_t* out) {
+  WordBlocks blocks(stream, pixels);
   while (blocks.next()) std::copy_n(blocks.words(), blocks.size(), out + blocks.first());
 }
 
@@ -38,10 +38,10 @@ HWY_INLINE Double uniforms(hn::Vec<hn::Half<Unsigned>> word) {
   return hn::Mul(hn::Add(hn::PromoteTo(d, centred), hn::Set(d, kHalfRange)), hn::Set(d, 0x1p-32));
 }
 
-void uniforms_kernel(const RandomStream& stream, const PixelRows& pixels, std::size_t columns, double* out) {
+void uniforms_kernel(const RandomStream& stream, const PixelPlaces& pixels, double* out) {
   const Doubles d;
   const hn::Half<Unsigned> du;
-  WordBlocks blocks(stream, pixels, columns);
+  WordBlocks blocks(stream, pixels);
   while (blocks.next()) {
     alignas(64) std::array<double, WordBlocks::kBlock + WordBlocks::kWidestVector> values;
     for (std::size_t k = 0; k < blocks.size(); k += kDoubles)
@@ -50,10 +50,10 @@ void uniforms_kernel(const RandomStream& stream, const PixelRows& pixels, std::s
   }
 }
 
-void normals_kernel(const RandomStream& stream, const PixelRows& pixels, std::size_t columns, float* out) {
+void normals_kernel(const RandomStream& stream, const PixelPlaces& pixels, float* out) {
   const Singles d;
   const Unsigned du;
-  WordBlocks blocks(stream, pixels, columns);
+  WordBlocks blocks(stream, pixels);
   while (blocks.next()) {
     alignas(64) std::array<float, WordBlocks::kBlock + WordBlocks::kWidestVector> values;
     for (std::size_t k = 0; k < blocks.size(); k += kSingles)
@@ -71,9 +71,8 @@ HWY_INLINE void add_normals(const std::uint32_t* words, double rms, double* valu
   hn::StoreU(hn::Add(hn::LoadU(d, values + kDoubles), hn::Mul(scale, upper)), d, values + kDoubles);
 }
 
-void add_normals_kernel(const RandomStream& stream, const PixelRows& pixels, std::size_t columns, double rms,
-                        double* values) {
-  WordBlocks blocks(stream, pixels, columns);
+void add_normals_kernel(const RandomStream& stream, const PixelPlaces& pixels, double rms, double* values) {
+  WordBlocks blocks(stream, pixels);
   while (blocks.next()) {
     double* const block = values + blocks.first();
     std::size_t k = 0;
@@ -179,9 +178,8 @@ HWY_INLINE bool poisson_block(const Method& method, std::size_t size, const doub
   return decided;
 }
 
-void poisson_kernel(const RandomStream& stream, const PixelRows& pixels, std::size_t columns, const double* mean,
-                    double* counts) {
-  WordBlocks blocks(stream, pixels, columns);
+void poisson_kernel(const RandomStream& stream, const PixelPlaces& pixels, const double* mean, double* counts) {
+  WordBlocks blocks(stream, pixels);
   while (blocks.next()) {
     const double* const block_mean = mean + blocks.first();
     double* const block = counts + blocks.first();
@@ -195,8 +193,7 @@ void poisson_kernel(const RandomStream& stream, const PixelRows& pixels, std::si
     if (HWY_LIKELY(decided)) continue;
     for (std::size_t i = 0; i < blocks.size(); ++i)
       if (!(block[i] >= 0.0))
-        block[i] =
-            poisson_at_pixel(stream, pixel_at(pixels, columns, blocks.first() + i), block_mean[i], blocks.words()[i]);
+        block[i] = poisson_at_pixel(stream, pixel_at(pixels, blocks.first() + i), block_mean[i], blocks.words()[i]);
   }
 }
 
@@ -246,26 +243,30 @@ HWY_EXPORT(poisson_kernel);
 HWY_EXPORT(digitise_kernel);
 }  // namespace
 
-void pixel_words(const RandomStream& stream, const PixelRows& pixels, std::span<std::uint32_t> words) {
-  HWY_DYNAMIC_DISPATCH(words_kernel)(stream, pixels, pixel_columns(pixels, words.size()), words.data());
+void pixel_words(const RandomStream& stream, const PixelPlaces& pixels, std::span<std::uint32_t> words) {
+  check_size(pixels, words.size());
+  HWY_DYNAMIC_DISPATCH(words_kernel)(stream, pixels, words.data());
 }
 
-void pixel_uniforms(const RandomStream& stream, const PixelRows& pixels, std::span<double> uniforms) {
-  HWY_DYNAMIC_DISPATCH(uniforms_kernel)(stream, pixels, pixel_columns(pixels, uniforms.size()), uniforms.data());
+void pixel_uniforms(const RandomStream& stream, const PixelPlaces& pixels, std::span<double> uniforms) {
+  check_size(pixels, uniforms.size());
+  HWY_DYNAMIC_DISPATCH(uniforms_kernel)(stream, pixels, uniforms.data());
 }
 
-void pixel_normals(const RandomStream& stream, const PixelRows& pixels, std::span<float> normals) {
-  HWY_DYNAMIC_DISPATCH(normals_kernel)(stream, pixels, pixel_columns(pixels, normals.size()), normals.data());
+void pixel_normals(const RandomStream& stream, const PixelPlaces& pixels, std::span<float> normals) {
+  check_size(pixels, normals.size());
+  HWY_DYNAMIC_DISPATCH(normals_kernel)(stream, pixels, normals.data());
 }
 
-void add_pixel_normals(const RandomStream& stream, const PixelRows& pixels, double rms, std::span<double> values) {
-  HWY_DYNAMIC_DISPATCH(add_normals_kernel)(stream, pixels, pixel_columns(pixels, values.size()), rms, values.data());
+void add_pixel_normals(const RandomStream& stream, const PixelPlaces& pixels, double rms, std::span<double> values) {
+  check_size(pixels, values.size());
+  HWY_DYNAMIC_DISPATCH(add_normals_kernel)(stream, pixels, rms, values.data());
 }
 
-void pixel_poisson(const RandomStream& stream, const PixelRows& pixels, std::span<const double> mean,
+void pixel_poisson(const RandomStream& stream, const PixelPlaces& pixels, std::span<const double> mean,
                    std::span<double> counts) {
   check_poisson(pixels, mean, counts);
-  HWY_DYNAMIC_DISPATCH(poisson_kernel)(stream, pixels, pixel_columns(pixels, mean.size()), mean.data(), counts.data());
+  HWY_DYNAMIC_DISPATCH(poisson_kernel)(stream, pixels, mean.data(), counts.data());
 }
 
 std::size_t digitise_pixels(std::span<const double> counts, double top, std::span<float> digital,

@@ -118,39 +118,51 @@ double poisson_of_word(double mean, std::uint32_t word) {
   return decided ? std::floor(mean) + static_cast<double>(steps) : poisson::kUndecided;
 }
 
-void pixel_words(const RandomStream& stream, const PixelRows& pixels, std::span<std::uint32_t> words) {
-  const std::size_t nx = pixel_columns(pixels, words.size());
-  for (std::size_t i = 0; i < words.size(); ++i) words[i] = pixel_word(stream, pixel_at(pixels, nx, i));
+namespace {
+
+/// Calls function(i, address) for every pixel.
+template <class Function>
+void for_each_pixel(const PixelPlaces& pixels, Function&& function) {
+  std::size_t i = 0;
+  for (const Rectangle& area : pixels.areas)
+    for (int y = area.y0; y < area.y1(); ++y)
+      for (int column = 0; column < area.nx; ++column) function(i++, address_of(pixels, area.x0 + column, y));
 }
 
-void pixel_uniforms(const RandomStream& stream, const PixelRows& pixels, std::span<double> uniforms) {
-  const std::size_t nx = pixel_columns(pixels, uniforms.size());
-  for (std::size_t i = 0; i < uniforms.size(); ++i)
-    uniforms[i] = uniform_from(pixel_word(stream, pixel_at(pixels, nx, i)));
+}  // namespace
+
+void pixel_words(const RandomStream& stream, const PixelPlaces& pixels, std::span<std::uint32_t> words) {
+  check_size(pixels, words.size());
+  for_each_pixel(pixels, [&](std::size_t i, const PixelAddress& at) { words[i] = pixel_word(stream, at); });
 }
 
-void pixel_normals(const RandomStream& stream, const PixelRows& pixels, std::span<float> normals) {
-  const std::size_t nx = pixel_columns(pixels, normals.size());
-  for (std::size_t i = 0; i < normals.size(); ++i)
-    normals[i] = pixel_normal(pixel_word(stream, pixel_at(pixels, nx, i)));
+void pixel_uniforms(const RandomStream& stream, const PixelPlaces& pixels, std::span<double> uniforms) {
+  check_size(pixels, uniforms.size());
+  for_each_pixel(pixels,
+                 [&](std::size_t i, const PixelAddress& at) { uniforms[i] = uniform_from(pixel_word(stream, at)); });
 }
 
-void add_pixel_normals(const RandomStream& stream, const PixelRows& pixels, double rms, std::span<double> values) {
-  const std::size_t nx = pixel_columns(pixels, values.size());
-  for (std::size_t i = 0; i < values.size(); ++i)
-    values[i] += rms * static_cast<double>(pixel_normal(pixel_word(stream, pixel_at(pixels, nx, i))));
+void pixel_normals(const RandomStream& stream, const PixelPlaces& pixels, std::span<float> normals) {
+  check_size(pixels, normals.size());
+  for_each_pixel(pixels,
+                 [&](std::size_t i, const PixelAddress& at) { normals[i] = pixel_normal(pixel_word(stream, at)); });
 }
 
-void pixel_poisson(const RandomStream& stream, const PixelRows& pixels, std::span<const double> mean,
+void add_pixel_normals(const RandomStream& stream, const PixelPlaces& pixels, double rms, std::span<double> values) {
+  check_size(pixels, values.size());
+  for_each_pixel(pixels, [&](std::size_t i, const PixelAddress& at) {
+    values[i] += rms * static_cast<double>(pixel_normal(pixel_word(stream, at)));
+  });
+}
+
+void pixel_poisson(const RandomStream& stream, const PixelPlaces& pixels, std::span<const double> mean,
                    std::span<double> counts) {
   check_poisson(pixels, mean, counts);
-  const std::size_t nx = pixel_columns(pixels, mean.size());
-  for (std::size_t i = 0; i < mean.size(); ++i) {
-    const PixelAddress address = pixel_at(pixels, nx, i);
-    const std::uint32_t word = pixel_word(stream, address);
+  for_each_pixel(pixels, [&](std::size_t i, const PixelAddress& at) {
+    const std::uint32_t word = pixel_word(stream, at);
     const double count = poisson_of_word(mean[i], word);
-    counts[i] = count >= 0.0 ? count : poisson_at_pixel(stream, address, mean[i], word);
-  }
+    counts[i] = count >= 0.0 ? count : poisson_at_pixel(stream, at, mean[i], word);
+  });
 }
 
 std::size_t digitise_pixels(std::span<const double> counts, double top, std::span<float> digital,

@@ -21,23 +21,25 @@ HWY_BEFORE_NAMESPACE();
 namespace astroid::HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Goes through rows of pixels block by block: `while (blocks.next())` with words() of pixels first() to first() +
-/// size(). A wide row is cut into blocks; narrow rows, as of windows, share one, so that no vector runs empty.
+/// Goes through pixels block by block: `while (blocks.next())` with words() of pixels first() to first() + size(). Wide
+/// rows are cut into blocks; narrow ones, as of windows, share one, so that no vector runs empty.
 class WordBlocks {
  public:
   static constexpr std::size_t kBlock = 256;        // pixels; some kilobytes on the stack
   static constexpr std::size_t kWidestVector = 16;  // singles
 
-  WordBlocks(const RandomStream& stream, const PixelRows& pixels, std::size_t columns)
-      : keys_(stream), pixels_(pixels), columns_(columns) {}
+  WordBlocks(const RandomStream& stream, const PixelPlaces& pixels)
+      : keys_(stream), pixels_(pixels), low_counter_(pixel_counter(address_of(pixels, 0, 0), 0)) {}
 
   HWY_INLINE bool next() {
     first_ += size_;
-    if (first_ >= columns_ * pixels_.rows) return false;
-    if (columns_ > kNarrow) {
-      wide();
+    size_ = 0;
+    while (area_ < pixels_.areas.size() && pixels_.areas[area_].empty()) ++area_;
+    if (area_ == pixels_.areas.size()) return false;
+    if (pixels_.areas[area_].nx > kNarrow) {
+      part_of_row();
     } else {
-      narrow();
+      whole_rows();
     }
     return true;
   }
@@ -47,77 +49,104 @@ class WordBlocks {
   [[nodiscard]] const std::uint32_t* words() const { return words_; }
 
  private:
-  static constexpr std::size_t kNarrow = 96;  // pixels in a row
+  static constexpr int kNarrow = 96;  // pixels in a row
   static constexpr std::size_t kCounters = kBlock / kWordsOfCounter + kWidestVector;
 
-  HWY_INLINE void wide() {
-    const std::size_t column = first_ % columns_;
-    size_ = std::min(kBlock, columns_ - column);
-    PixelAddress address = pixels_.address;
-    address.y += static_cast<std::int32_t>(first_ / columns_);
-    const std::int32_t x = address.x0 + static_cast<std::int32_t>(column);
-    const std::size_t lead = static_cast<std::uint32_t>(x) % kWordsOfCounter;
-    const std::size_t counters = (lead + size_ + kWordsOfCounter - 1) / kWordsOfCounter;
-    const RandomWords counter = pixel_counter(address, x);
-    alignas(64) std::array<std::uint64_t, philox_counters()> lanes;
-    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[philox_lane(i)] = counter[0] + i;
+  static std::size_t lead_of(int x) { return static_cast<std::uint32_t>(x) % kWordsOfCounter; }
+  static std::size_t counters_of(int x, std::size_t columns) {
+    return (lead_of(x) + columns + kWordsOfCounter - 1) / kWordsOfCounter;
+  }
+
+  HWY_INLINE void part_of_row() {
+    const Rectangle& area = pixels_.areas[area_];
+    const auto columns = static_cast<std::size_t>(area.nx) - column_;
+    size_ = std::min(kBlock, columns);
+    const int x = area.x0 + static_cast<int>(column_);
+    const RandomWords counter = pixel_counter(address_of(pixels_, x, area.y0 + row_), x);
     const Words64 d;
-    Vector64 c0 = hn::LoadU(d, lanes.data());
+    Vector64 c0 = in_philox_order(hn::Iota(d, counter[0]));
     const Vector64 c1 = hn::Set(d, std::uint64_t{counter[1]});
     const Vector64 c2 = hn::Set(d, std::uint64_t{counter[2]});
     const Vector64 c3 = hn::Set(d, std::uint64_t{counter[3]});
     const Vector64 step = hn::Set(d, std::uint64_t{philox_counters()});
+    const std::size_t counters = counters_of(x, size_);
     for (std::size_t i = 0; i < counters; i += philox_counters()) {
       philox(keys_, c0, c1, c2, c3, buffer_.data() + kWordsOfCounter * i);
       c0 = hn::Add(c0, step);
     }
-    words_ = buffer_.data() + lead;
+    words_ = buffer_.data() + lead_of(x);
+    column_ += size_;
+    if (column_ < static_cast<std::size_t>(area.nx)) return;
+    column_ = 0;
+    next_row();
   }
 
-  /// As many whole rows as fit: their counters side by side, then the words of each row picked out.
-  HWY_INLINE void narrow() {
-    const std::int32_t x = pixels_.address.x0;
-    const std::size_t lead = static_cast<std::uint32_t>(x) % kWordsOfCounter;
-    const std::size_t per_row = (lead + columns_ + kWordsOfCounter - 1) / kWordsOfCounter;
-    const std::size_t row = first_ / columns_;
-    const std::size_t rows = std::min(pixels_.rows - row, kBlock / (per_row * kWordsOfCounter));
-    size_ = rows * columns_;
-    const RandomWords counter = pixel_counter(pixels_.address, x);
+  HWY_INLINE void next_row() {
+    if (++row_ < pixels_.areas[area_].ny) return;
+    row_ = 0;
+    ++area_;
+  }
+
+  /// As many narrow rows as fit, of one area or several: their counters side by side, then the words of each picked
+  /// out.
+  HWY_INLINE void whole_rows() {
     constexpr std::size_t kAtOnce = philox_counters();
+    constexpr std::size_t kMostRows = kBlock;
     alignas(64) std::array<std::uint64_t, kCounters> columns;
     alignas(64) std::array<std::uint64_t, kCounters> lines;
-    std::size_t count = 0;
-    for (std::size_t r = 0; r < rows; ++r) {
-      const std::uint32_t y = counter[1] + static_cast<std::uint32_t>(row + r);
-      for (std::size_t k = 0; k < per_row; ++k, ++count) {
-        const std::size_t place = count / kAtOnce * kAtOnce + philox_lane(count % kAtOnce);
-        columns[place] = static_cast<std::uint32_t>(counter[0] + static_cast<std::uint32_t>(k));
-        lines[place] = y;
+    std::array<std::uint16_t, kMostRows> begin;  // of each row's words
+    std::array<std::uint16_t, kMostRows> length;
+    std::size_t counters = 0;
+    std::size_t rows = 0;
+    while (area_ < pixels_.areas.size()) {
+      const Rectangle& area = pixels_.areas[area_];
+      if (area.empty()) {
+        ++area_;
+        continue;
       }
+      const auto width = static_cast<std::size_t>(area.nx);
+      const std::size_t needed = counters_of(area.x0, width);
+      if (area.nx > kNarrow || counters + needed > kBlock / kWordsOfCounter || rows == kMostRows) break;
+      const RandomWords counter = pixel_counter(address_of(pixels_, area.x0, area.y0 + row_), area.x0);
+      begin[rows] = static_cast<std::uint16_t>(counters * kWordsOfCounter + lead_of(area.x0));
+      length[rows++] = static_cast<std::uint16_t>(width);
+      for (std::size_t k = 0; k < needed; ++k, ++counters) {
+        columns[counters] = counter[0] + k;  // its low half counts
+        lines[counters] = counter[1];
+      }
+      size_ += width;
+      next_row();
     }
-    for (; count % kAtOnce != 0; ++count) {
-      const std::size_t place = count / kAtOnce * kAtOnce + philox_lane(count % kAtOnce);
-      columns[place] = 0;
-      lines[place] = 0;
-    }
+    for (std::size_t i = counters; i % kAtOnce != 0; ++i) columns[i] = lines[i] = 0;
     const Words64 d;
-    const Vector64 c2 = hn::Set(d, std::uint64_t{counter[2]});
-    const Vector64 c3 = hn::Set(d, std::uint64_t{counter[3]});
-    for (std::size_t i = 0; i < count; i += kAtOnce)
-      philox(keys_, hn::LoadU(d, columns.data() + i), hn::LoadU(d, lines.data() + i), c2, c3,
-             buffer_.data() + kWordsOfCounter * i);
-    for (std::size_t r = 0; r < rows; ++r)
-      std::copy_n(buffer_.data() + r * per_row * kWordsOfCounter + lead, columns_, packed_.data() + r * columns_);
+    const Vector64 c2 = hn::Set(d, std::uint64_t{low_counter_[2]});
+    const Vector64 c3 = hn::Set(d, std::uint64_t{low_counter_[3]});
+    for (std::size_t i = 0; i < counters; i += kAtOnce)
+      philox(keys_, in_philox_order(hn::Load(d, columns.data() + i)), in_philox_order(hn::Load(d, lines.data() + i)),
+             c2, c3, buffer_.data() + kWordsOfCounter * i);
+    std::uint32_t* packed = packed_.data();
+    for (std::size_t r = 0; r < rows; ++r) {
+      // A fixed length is copied in two instructions; what is too much of it is overwritten by the next row.
+      if (length[r] <= kWidestVector) {
+        std::copy_n(buffer_.data() + begin[r], kWidestVector, packed);
+      } else {
+        std::copy_n(buffer_.data() + begin[r], length[r], packed);
+      }
+      packed += length[r];
+    }
     words_ = packed_.data();
   }
 
   PhiloxKeys keys_;
-  PixelRows pixels_;
-  std::size_t columns_;
+  PixelPlaces pixels_;
+  RandomWords low_counter_;  // exposure, read and draw in its last two words
+  std::size_t area_ = 0;
+  int row_ = 0;
+  std::size_t column_ = 0;
   std::size_t first_ = 0;
   std::size_t size_ = 0;
   const std::uint32_t* words_ = nullptr;
-  alignas(64) std::array<std::uint32_t, kCounters * kWordsOfCounter> buffer_;
+  alignas(64) std::array<std::uint32_t, kCounters * kWordsOfCounter + kWidestVector> buffer_;
   alignas(64) std::array<std::uint32_t, kBlock + kWidestVector> packed_;
 };
 

@@ -31,8 +31,8 @@ EffectNeed FullWell::is_needed(const SceneSummary& scene) const {
 void FullWell::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const CcdSettings& ccd = context.scene.mission().ccd;
   const double full_well = ccd.full_well.value();
-  for (std::size_t r = 0; r < strip.pieces.size(); ++r) {
-    const auto electrons = state.sampled.view(strip, strip.pieces[r]);
+  for (std::size_t r = 0; r < strip.areas.size(); ++r) {
+    const auto electrons = state.sampled.view(strip, r);
     const auto flags = state.frame.flags.view(r);
     state.lost_electrons +=
         ccd.blooming ? bloom(electrons, full_well, &flags) : clip_full_well(electrons, full_well, &flags);

@@ -17,9 +17,8 @@ EffectNeed PhotonNoise::is_needed(const SceneSummary& scene) const {
 }
 
 void PhotonNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  for (const StripPiece& piece : strip.pieces)
-    pixel_poisson(context.stream, noise_of(piece, state.exposure), state.expected.pixels(strip, piece),
-                  state.sampled.pixels(strip, piece));
+  pixel_poisson(context.stream, noise_of(strip, state.exposure), state.expected.pixels(strip),
+                state.sampled.pixels(strip));
 }
 
 }  // namespace astroid

@@ -23,8 +23,7 @@ EffectNeed ReadoutNoise::is_needed(const SceneSummary& scene) const {
 
 void ReadoutNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const double rms = context.scene.mission().ccd.readout_noise.value();
-  for (const StripPiece& piece : strip.pieces)
-    add_pixel_normals(context.stream, noise_of(piece, state.exposure), rms, state.sampled.pixels(strip, piece));
+  add_pixel_normals(context.stream, noise_of(strip, state.exposure), rms, state.sampled.pixels(strip));
 }
 
 }  // namespace astroid

@@ -37,12 +37,12 @@ void Stars::prepare(CameraState& camera, const PrepareContext& context) const {
   const Attitude& farthest = context.attitude.farthest;
   const Attitude reach{farthest.yaw + 2.0 * scale.yaw, farthest.pitch + 2.0 * scale.pitch,
                        farthest.roll + 2.0 * scale.roll};
-  std::vector<StripPiece> pieces;
-  for (const Strip& strip : camera.strips) pieces.insert(pieces.end(), strip.pieces.begin(), strip.pieces.end());
-  auto lists = star_lists(context.scene, context.knobs, pieces, reach);
+  std::vector<Rectangle> areas;
+  for (const Strip& strip : camera.strips) areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
+  auto lists = star_lists(context.scene, context.knobs, areas, reach);
   auto list = lists.begin();
   for (const Strip& strip : camera.strips) {
-    const auto end = list + static_cast<std::ptrdiff_t>(strip.pieces.size());
+    const auto end = list + static_cast<std::ptrdiff_t>(strip.areas.size());
     camera.stars.emplace_back(std::move_iterator(list), std::move_iterator(end));
     list = end;
   }
@@ -57,9 +57,9 @@ void Stars::apply(ExposureState& state, const EffectContext& context, const Stri
   auto part = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin);
   for (; part != strips.end() && part->begin < strip.end; ++part) {
     const auto& lists = context.camera.stars[static_cast<std::size_t>(part - strips.begin())];
-    for (std::size_t p = 0; p < lists.size(); ++p) {
-      const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(strip, part->pieces[p]);
-      for (const RenderedStar& star : lists[p]) {
+    for (std::size_t a = 0; a < lists.size(); ++a) {
+      const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(*part, a);
+      for (const RenderedStar& star : lists[a]) {
         StarLight light{.centre = {}, .electrons = star.electrons, .half_width = star.half_width};
         if (jitter == JitterTreatment::kSubSteps) {
           light.electrons /= steps;

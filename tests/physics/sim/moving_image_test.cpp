@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -100,7 +101,8 @@ TEST(MovingImage, HoldsUpToTheBordersOfACellAndBeyond) {
       places.push_back({yaw * scale.yaw, pitch * scale.pitch, 0.9 * scale.roll});
   for (const Attitude& a : places) {
     series->moments.push_back({.mean = a, .covariance = {}});
-    series->samples.push_back(a);
+    const std::vector<float> weights = exposure_weights(plan->knobs.polynomial, std::array{a});
+    series->weights.insert(series->weights.end(), weights.begin(), weights.end());
     series->farthest = {3.0 * scale.yaw, 3.0 * scale.pitch, scale.roll};
   }
   const Simulator recalled(scene, plan, 0, series);

@@ -114,7 +114,8 @@ TEST(PlanePrecision, SinglePrecisionNormalsMoveNoCount) {
   const RandomStream stream = make_stream(1, StreamId{9}, 0, 0);
   std::vector<double> single(20000, 0.0);
   std::vector<double> exact(single.size());
-  add_pixel_normals(stream, {}, 50.2, single);
+  const Rectangle row{0, 0, static_cast<int>(single.size()), 1};
+  add_pixel_normals(stream, {.areas = {&row, 1}}, 50.2, single);
   normal_row(stream, {}, exact);
   double worst = 0.0;
   for (std::size_t i = 0; i < single.size(); ++i) worst = std::max(worst, std::abs(single[i] - 50.2 * exact[i]));

@@ -45,13 +45,32 @@ class OnTarget : public testing::TestWithParam<std::string> {
 INSTANTIATE_TEST_SUITE_P(Targets, OnTarget, testing::ValuesIn(vector_targets()),
                          [](const auto& target) { return target.param; });
 
-/// Rows and windows of awkward widths, columns before the first and counters that wrap.
-std::vector<std::pair<PixelRows, std::size_t>> shapes() {
-  std::vector<std::pair<PixelRows, std::size_t>> all;
-  for (const std::int32_t x0 : {0, 1, 2, 3, -1, -7, 4509, std::numeric_limits<std::int32_t>::min() + 3})
-    for (const std::size_t columns : {1U, 2U, 3U, 5U, 6U, 15U, 16U, 17U, 63U, 96U, 97U, 255U, 256U, 257U, 700U})
-      for (const std::size_t rows : {1U, 2U, 7U, 45U})
-        all.push_back({{.address = {x0, -3, 9, 2, 1}, .rows = rows}, columns * rows});
+/// Pixels and how many they are.
+struct Shape {
+  std::vector<Rectangle> areas;
+  std::size_t size = 0;
+  [[nodiscard]] PixelPlaces places() const { return {.areas = areas, .exposure = 9, .read = 2, .draw = 1}; }
+};
+
+/// Rows and windows of awkward widths, columns before the first and counters that wrap; then many areas in a row,
+/// narrow and wide ones and some without pixels.
+std::vector<Shape> shapes() {
+  std::vector<Shape> all;
+  for (const int x0 : {0, 1, 2, 3, -1, -7, 4509, std::numeric_limits<int>::min() + 3})
+    for (const int columns : {1, 2, 3, 5, 6, 15, 16, 17, 63, 96, 97, 255, 256, 257, 700})
+      for (const int rows : {1, 2, 7, 45})
+        all.push_back({{{x0, -3, columns, rows}}, static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows)});
+  Shape mixed;
+  for (int i = 0; i < 120; ++i) {
+    mixed.areas.push_back({7 * i - 50, 3 * i,
+                           i % 11 == 4   ? 0
+                           : i % 17 == 3 ? 300
+                                         : 1 + i % 9,
+                           i % 13 == 5 ? 0 : 1 + i % 7});
+    mixed.size += mixed.areas.back().size();
+  }
+  all.push_back(mixed);
+  all.push_back({});
   return all;
 }
 
@@ -71,7 +90,9 @@ std::vector<double> any_means(std::size_t size) {
 }
 
 TEST_P(OnTarget, WordsAreThoseOfPhilox) {
-  for (const auto& [pixels, size] : shapes()) {
+  for (const Shape& shape : shapes()) {
+    const PixelPlaces pixels = shape.places();
+    const std::size_t size = shape.size;
     std::vector<std::uint32_t> kernel(size);
     std::vector<std::uint32_t> plain(size);
     pixel_words(stream(), pixels, kernel);
@@ -81,7 +102,9 @@ TEST_P(OnTarget, WordsAreThoseOfPhilox) {
 }
 
 TEST_P(OnTarget, UniformsAreThoseOfTheirWords) {
-  for (const auto& [pixels, size] : shapes()) {
+  for (const Shape& shape : shapes()) {
+    const PixelPlaces pixels = shape.places();
+    const std::size_t size = shape.size;
     std::vector<double> kernel(size);
     std::vector<double> plain(size);
     pixel_uniforms(stream(), pixels, kernel);
@@ -91,7 +114,9 @@ TEST_P(OnTarget, UniformsAreThoseOfTheirWords) {
 }
 
 TEST_P(OnTarget, NormalsAreThoseOfTheirWords) {
-  for (const auto& [pixels, size] : shapes()) {
+  for (const Shape& shape : shapes()) {
+    const PixelPlaces pixels = shape.places();
+    const std::size_t size = shape.size;
     std::vector<float> kernel(size);
     std::vector<float> plain(size);
     pixel_normals(stream(), pixels, kernel);
@@ -106,7 +131,9 @@ TEST_P(OnTarget, NormalsAreThoseOfTheirWords) {
 }
 
 TEST_P(OnTarget, CountsAreThoseOfThePoissonQuantile) {
-  for (const auto& [pixels, size] : shapes()) {
+  for (const Shape& shape : shapes()) {
+    const PixelPlaces pixels = shape.places();
+    const std::size_t size = shape.size;
     std::vector<double> kernel(size);
     std::vector<double> plain(size);
     const std::vector<double> mean = any_means(size);
@@ -117,11 +144,12 @@ TEST_P(OnTarget, CountsAreThoseOfThePoissonQuantile) {
 }
 
 TEST_P(OnTarget, CountsOfOneMeanAreThoseOfThePoissonQuantile) {
-  constexpr std::size_t kSize = 20000;
+  constexpr int kSize = 20000;
   for (const double mean : {0.0, 1e-300, 1e-9, 0.3, 5.0, 9.9999999, 10.0, 12.0, 60.0, 945.0, 1e5, 1e8, 1e12, 1e15}) {
     std::vector<double> kernel(kSize);
     std::vector<double> plain(kSize);
-    const PixelRows pixels{.address = {-5, 3, 1, 0, 0}};
+    const std::vector<Rectangle> row{{-5, 3, kSize, 1}};
+    const PixelPlaces pixels{.areas = row, .exposure = 1};
     pixel_poisson(stream(), pixels, std::vector<double>(kSize, mean), kernel);
     reference::pixel_poisson(stream(), pixels, std::vector<double>(kSize, mean), plain);
     expect_same_bits(kernel, plain, "mean " + std::to_string(mean));
@@ -130,11 +158,12 @@ TEST_P(OnTarget, CountsOfOneMeanAreThoseOfThePoissonQuantile) {
 
 TEST_P(OnTarget, PoissonRefusesWhatIsNoMean) {
   std::vector<double> counts(40);
+  const std::vector<Rectangle> row{{0, 0, 40, 1}};
   for (const double bad : {-1.0, -1e-300, std::nan(""), -std::nan(""), 2e15, std::numeric_limits<double>::infinity()})
     for (const std::size_t place : {0U, 17U, 39U}) {
       std::vector<double> mean(counts.size(), 50.0);
       mean[place] = bad;
-      EXPECT_THROW(pixel_poisson(stream(), {}, mean, counts), BugError) << bad << " at " << place;
+      EXPECT_THROW(pixel_poisson(stream(), {.areas = row}, mean, counts), BugError) << bad << " at " << place;
     }
 }
 

@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::uint64_t kSeed = 20260101;
 constexpr StreamId kEffect{7};
-constexpr std::size_t kRows = 64;
-constexpr std::size_t kColumns = 1024;
-constexpr std::size_t kFrame = kRows * kColumns;
+constexpr int kRows = 64;
+constexpr int kColumns = 1024;
+constexpr std::size_t kFrame = static_cast<std::size_t>(kRows) * kColumns;
 
 /// Kolmogorov's distribution: probability of a larger distance * sqrt(n).
 double kolmogorov(double scaled) {
@@ -29,8 +29,10 @@ double kolmogorov(double scaled) {
   return std::clamp(probability, 0.0, 1.0);
 }
 
-PixelRows frame(std::size_t number) {
-  return {.address = {.exposure = static_cast<std::uint32_t>(number)}, .rows = kRows};
+constexpr Rectangle kArea{0, 0, kColumns, kRows};
+
+PixelPlaces frame(std::size_t number) {
+  return {.areas = {&kArea, 1}, .exposure = static_cast<std::uint32_t>(number)};
 }
 
 /// A histogram of whole numbers about the mean, in bins of a whole width.
@@ -256,12 +258,12 @@ TEST(BillionDraws, AreIndependentBetweenPixelsExposuresEffectsAndCameras) {
   };
   const auto shifted = [&](PixelAddress shift) {
     return [&stream, shift](std::size_t f, std::vector<float>& a, std::vector<float>& b) {
-      const PixelRows pixels = frame(f);
-      PixelRows other = pixels;
-      other.address.x0 += shift.x0;
-      other.address.y += shift.y;
-      other.address.exposure += shift.exposure;
-      other.address.draw = shift.draw;
+      const PixelPlaces pixels = frame(f);
+      const Rectangle moved{kArea.x0 + shift.x0, kArea.y0 + shift.y, kArea.nx, kArea.ny};
+      PixelPlaces other = pixels;
+      other.areas = {&moved, 1};
+      other.exposure += shift.exposure;
+      other.draw = shift.draw;
       pixel_normals(stream(7, 1, 0), pixels, a);
       pixel_normals(stream(7, 1, 0), other, b);
     };

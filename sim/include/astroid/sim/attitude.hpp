@@ -74,6 +74,7 @@ class AttitudeModel {
 struct AttitudeSeries {
   std::vector<AttitudeMoments> moments;  ///< [exposure]; empty when nothing moves
   std::vector<Attitude> samples;         ///< [exposure][step], only where exposures are rendered step by step
+  std::vector<float> weights;            ///< [exposure][map], only where images are a polynomial in the attitude
   int steps = 1;
   Attitude farthest;  ///< the largest of each axis, in absolute value
 };

@@ -82,7 +82,7 @@ struct RenderedStar {
 struct CameraState {
   int camera = 0;
   std::vector<Strip> strips;                                  ///< of the layout
-  std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][piece]: those that may reach it
+  std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][area]: those that may reach it
   Plane<float, unit::Relative> prnu;                          ///< pixel response, mean 1; empty when the effect is off
   Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
 };

@@ -26,6 +26,10 @@ struct MovingImageCell {
   std::vector<Plane<float, unit::ExpectedElectrons>> maps;  ///< of terms 1, 2, …
 };
 
+/// Weights of the maps for an exposure with these attitudes: the means of the terms but the first, about the centre of
+/// the cell that their mean lies in.
+std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::span<const Attitude> attitudes);
+
 /// Makes cells where attitudes lead, and keeps the latest ones. @thread safe
 class MovingImage {
  public:
@@ -34,13 +38,14 @@ class MovingImage {
   /// The image of one exposure: the maps of its cell and the weight of each.
   struct Exposure {
     std::shared_ptr<const MovingImageCell> cell;
-    std::vector<float> weights;
+    std::span<const float> weights;
     /// The pixels of a strip.
     void recall(const Strip& strip, std::span<double> expected) const;
   };
-  /// @param steps  the attitudes of the exposure; its mean decides the cell.
-  /// @param render  makes the images of a cell that is not at hand.
-  [[nodiscard]] Exposure exposure(std::span<const Attitude> steps, const RenderAt& render) const;
+  /// @param mean     attitude of the exposure, which decides the cell.
+  /// @param weights  of exposure_weights().
+  /// @param render   makes the images of a cell that is not at hand.
+  [[nodiscard]] Exposure exposure(const Attitude& mean, std::span<const float> weights, const RenderAt& render) const;
 
  private:
   [[nodiscard]] std::shared_ptr<const MovingImageCell> cell(const Attitude& centre, const RenderAt& render) const;

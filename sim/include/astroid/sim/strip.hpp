@@ -10,21 +10,22 @@
 
 namespace astroid {
 
-/// Whole rows of one region, as they lie in the buffer of a layout: pixels `begin` … `begin + area.size()`.
-struct StripPiece {
-  Rectangle area;
-  std::size_t begin = 0;
-};
-
-/// Consecutive pixels of a layout, `begin` … `end`: some rows of a large region, or many small windows.
+/// Consecutive pixels of a layout, `begin` … `end`: some rows of a large region, or many small windows. They are the
+/// pixels of its areas, one after the other, each row by row.
 struct Strip {
   std::size_t begin = 0;
   std::size_t end = 0;
-  std::vector<StripPiece> pieces;
+  std::vector<Rectangle> areas;          ///< whole rows of one region each
+  std::vector<std::size_t> area_begins;  ///< where each begins in the buffer of the layout
   [[nodiscard]] std::size_t size() const { return end - begin; }
+  void add(const Rectangle& area) {
+    areas.push_back(area);
+    area_begins.push_back(end);
+    end += area.size();
+  }
 };
 
-/// All pixels in one strip; its pieces are the regions.
+/// All pixels in one strip; its areas are the regions.
 Strip whole_strip(const PixelLayout& layout);
 
 /// Strips of about `pixels` pixels, at least one row each, in the order of the buffer.
@@ -63,12 +64,11 @@ class StripPlane {
     ASTROID_CHECK_LE(strip.size(), strip_.size());
     return std::span(strip_).first(strip.size());
   }
-  /// Those of one of its pieces, row by row.
-  [[nodiscard]] std::span<T> pixels(const Strip& strip, const StripPiece& piece) {
-    return pixels(strip).subspan(piece.begin - strip.begin, piece.area.size());
-  }
-  [[nodiscard]] ImageView<T, Unit> view(const Strip& strip, const StripPiece& piece) {
-    return {pixels(strip, piece).data(), piece.area, static_cast<std::size_t>(piece.area.nx)};
+  /// One of its areas.
+  [[nodiscard]] ImageView<T, Unit> view(const Strip& strip, std::size_t area) {
+    const std::span<T> all = pixels(strip);
+    const Rectangle& rectangle = strip.areas[area];
+    return {all.data() + (strip.area_begins[area] - strip.begin), rectangle, static_cast<std::size_t>(rectangle.nx)};
   }
 
  private:
