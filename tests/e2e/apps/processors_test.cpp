@@ -4,14 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <set>
 
-#include "astroid/core/distributions.hpp"
 #include "astroid/core/fits_writer.hpp"
-#include "astroid/core/random.hpp"
 #include "astroid/core/vector_target.hpp"
 #include "astroid/test/psf_table.hpp"
 #include "program.hpp"
@@ -21,21 +18,6 @@ namespace astroid {
 namespace {
 
 using testing::HasSubstr;
-
-/// Writes NAME.csv (id,x,y,electrons): stars at random places of a square, most of them faint.
-void write_field(const std::filesystem::path& folder, const std::string& name, int side, int stars) {
-  constexpr double kFaintest = 4000.0;  // e-
-  const RandomStream stream = make_stream(14, StreamId{0xf1e1d}, 0, 0);
-  std::ofstream file(folder / (name + ".csv"));
-  file << "id,x,y,electrons\n";
-  for (int i = 0; i < stars; ++i) {
-    const auto step = static_cast<std::uint32_t>(i);
-    file << 's' << i << ',' << side * uniform_at_step(stream, {.step = step, .axis = 0}) - 0.5 << ','
-         << side * uniform_at_step(stream, {.step = step, .axis = 1}) - 0.5 << ','
-         << kFaintest / (uniform_at_step(stream, {.step = step, .axis = 2}) + 1e-3) << '\n';
-  }
-  file << "bright," << 0.4 * side << ',' << 0.6 * side << ",2e6\n";
-}
 
 /// Writes psf.fits: a Gaussian of 0.7 px on samples of 1/8 px.
 void write_psf(const std::filesystem::path& folder) {
@@ -103,9 +85,10 @@ class Processors : public testing::Test {
  protected:
   void SetUp() override {
     test::write_small_mission(folder_);
-    write_field(folder_.path(), "field", 60, 40);
+    const std::string bright = "bright,24,36,2e6\n";
+    test::write_pixel_field(folder_.path() / "field.csv", 60, 40, bright);
     constexpr int kCrowd = 580;  // 14 stars in 100 px
-    write_field(folder_.path(), "crowd", 64, kCrowd);
+    test::write_pixel_field(folder_.path() / "crowd.csv", 64, kCrowd, bright);
     write_psf(folder_.path());
   }
   std::filesystem::path run(const std::string& name, const Words& runner, const Words& arguments) {
