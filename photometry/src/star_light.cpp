@@ -49,6 +49,7 @@ std::vector<Rectangle> star_stamps(const GroundModel& model, const PhotometrySet
     if (shines(model.stars[target])) faintest = std::min(faintest, model.stars[target].electrons);
   std::vector<Rectangle> stamps(model.stars.size());
   if (!std::isfinite(faintest)) return stamps;
+  if (model.faintest_electrons > 0.0) faintest = model.faintest_electrons;
   StampSizes sizes(*model.psf, model.accuracy * faintest, settings.mask_reach.value());
   for (std::size_t i = 0; i < stamps.size(); ++i) {
     const FieldStar& star = model.stars[i];

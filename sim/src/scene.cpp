@@ -51,6 +51,11 @@ bool inside(const Rectangle& r, PixelPosition p) {
   return p.x >= r.x0 - 0.5 && p.x < r.x1() - 0.5 && p.y >= r.y0 - 0.5 && p.y < r.y1() - 0.5;
 }
 
+/// Whether a star is bright enough, wherever it is.
+bool may_be_target(const SceneStar& star, const Mission& mission) {
+  return star.magnitude <= mission.photometry.target_limit && star.electrons > 0.0;
+}
+
 /// The window of side `size` around a star, as masks see it: 6 px start at floor(x) - 2.
 Rectangle window_around(PixelPosition p, int size) {
   const int back = (size - 1) / 2;
@@ -88,6 +93,14 @@ std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {
 
 double star_electrons(Magnitude magnitude, const TelescopeSettings& telescope, Seconds exposure_time) {
   return (electron_rate(magnitude, telescope.zero_point) * exposure_time).value();
+}
+
+std::vector<std::size_t> full_frame_targets(const Scene& scene) {
+  std::vector<std::size_t> targets;
+  for (std::size_t i = 0; i < scene.stars().size(); ++i)
+    if (may_be_target(scene.stars()[i], scene.mission()) && inside(scene.detector(), scene.stars()[i].position))
+      targets.push_back(i);
+  return targets;
 }
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
@@ -153,8 +166,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
       ccd.has_sub_field ? intersect(detector(), {ccd.sub_x0, ccd.sub_y0, ccd.sub_columns, ccd.sub_rows}) : detector();
   for (std::size_t i = 0; i < stars_.size(); ++i) {
     SceneStar& star = stars_[i];
-    star.is_target =
-        star.magnitude <= mission_.photometry.target_limit && star.electrons > 0.0 && inside(area, star.position);
+    star.is_target = may_be_target(star, mission_) && inside(area, star.position);
     if (!star.is_target) continue;
     targets_.push_back(i);
     if (ccd.window > 0) regions.push_back(intersect(detector(), window_around(star.position, ccd.window)));
@@ -196,7 +208,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
       s.brightest_magnitude = star.magnitude.value();
     }
     // Decisions are the same for windows and full frame, so "target" here is by brightness alone.
-    if (star.magnitude <= mission_.photometry.target_limit && star.electrons > 0.0) {
+    if (may_be_target(star, mission_)) {
       ++s.targets;
       // What a saturated star's flux means does not depend on ppm.
       const double unsaturated = ccd.full_well.value() / s.psf.peak_fraction;

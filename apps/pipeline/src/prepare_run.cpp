@@ -1,3 +1,9 @@
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
 #include "astroid/analysis/budget.hpp"
 #include "astroid/pipeline/field.hpp"
 #include "astroid/pipeline/ground.hpp"
@@ -15,10 +21,10 @@ PreparedRun prepare_run(const Mission& mission) {
 
 namespace {
 
-/// Mean over the targets: the roll makes little difference between them.
-MotionCovariance mean_bin_motion(const Scene& scene) {
+/// Mean over stars: the roll makes little difference between them.
+MotionCovariance mean_bin_motion(const Scene& scene, std::span<const std::size_t> stars) {
   MotionCovariance mean;
-  const std::vector<StarMotion> motions = target_motions(scene);
+  const std::vector<StarMotion> motions = star_motions(scene, stars);
   const auto count = static_cast<double>(motions.size());
   for (const StarMotion& motion : motions) {
     mean.sxx += motion.bin.sxx / count;
@@ -26,6 +32,12 @@ MotionCovariance mean_bin_motion(const Scene& scene) {
     mean.syy += motion.bin.syy / count;
   }
   return mean;
+}
+
+double faintest_of(const Scene& scene, std::span<const std::size_t> stars) {
+  double faintest = std::numeric_limits<double>::infinity();
+  for (const std::size_t star : stars) faintest = std::min(faintest, scene.stars()[star].electrons);
+  return faintest;
 }
 
 }  // namespace
@@ -37,10 +49,15 @@ Ground perfect_ground(const Scene& scene) {
   ground.model.targets = scene.targets();
   ground.model.psf = &scene.psf();
   ground.model.noise = expected_pixel_noise(scene.mission());
+  // What estimators have in common is decided by the targets of the full frame, whichever pixels are computed: the same
+  // weights for a star in a window, a sub-field and the full frame.
+  const std::vector<std::size_t> targets = full_frame_targets(scene);
   ground.model.accuracy = scene.summary().accuracy;
+  ground.model.faintest_electrons = targets.empty() ? 0.0 : faintest_of(scene, targets);
   ground.model.contamination_limit = scene.mission().analysis.uncontaminated_spr;
   const RunSetup setup = run_setup(scene.mission());
-  ground.model.motion = motion_like_pixel_noise(mean_bin_motion(scene), setup.exposures_per_bin, setup.cameras);
+  ground.model.motion =
+      motion_like_pixel_noise(mean_bin_motion(scene, targets), setup.exposures_per_bin, setup.cameras);
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
   return ground;

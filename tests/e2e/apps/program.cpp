@@ -1,6 +1,7 @@
 #include "program.hpp"
 
 #include <fcntl.h>
+#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -11,6 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "astroid/core/product_folder.hpp"
 #include "astroid/test/temporary_folder.hpp"
 
 namespace astroid::test {
@@ -58,8 +60,14 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::fi
 }
 
 ProgramResult run_astroid(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+  return run_astroid_through({}, arguments, folder);
+}
+
+ProgramResult run_astroid_through(const std::vector<std::string>& runner, const std::vector<std::string>& arguments,
+                                  const std::filesystem::path& folder) {
   ::setenv("SOURCE_DATE_EPOCH", "1800000000", 1);
-  std::vector<std::string> command{ASTROID_PROGRAM};
+  std::vector<std::string> command = runner;
+  command.emplace_back(ASTROID_PROGRAM);
   command.insert(command.end(), arguments.begin(), arguments.end());
   return run_program(command, folder);
 }
@@ -93,6 +101,20 @@ std::vector<std::string> files_below(const std::filesystem::path& folder) {
     if (!entry.is_directory()) names.push_back(entry.path().lexically_relative(folder).generic_string());
   std::ranges::sort(names);
   return names;
+}
+
+std::size_t expect_same_products(const std::filesystem::path& run, const std::filesystem::path& other,
+                                 const std::vector<std::string>& parts) {
+  const std::vector<std::string> files = files_below(run);
+  EXPECT_EQ(files, files_below(other)) << other;
+  std::size_t compared = 0;
+  for (const std::string& file : files) {
+    if (file == "run.json" || file.starts_with("report/figures/") || !std::filesystem::exists(other / file)) continue;
+    if (std::ranges::none_of(parts, [&](const std::string& part) { return file.starts_with(part); })) continue;
+    EXPECT_EQ(sha256_of_file(run / file), sha256_of_file(other / file)) << file << " in " << run << " and " << other;
+    ++compared;
+  }
+  return compared;
 }
 
 }  // namespace astroid::test

@@ -20,6 +20,10 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::fi
 /// Runs astroid. Dates in products are those of SOURCE_DATE_EPOCH, so that runs can be compared byte by byte.
 ProgramResult run_astroid(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
 
+/// The same by way of another program: an emulator of processors, or `env` with variables.
+ProgramResult run_astroid_through(const std::vector<std::string>& runner, const std::vector<std::string>& arguments,
+                                  const std::filesystem::path& folder);
+
 /// Whether a program is in the PATH.
 bool has_program(const std::string& name);
 
@@ -28,5 +32,11 @@ std::vector<std::string> lines_of(const std::string& text);
 
 /// Names of all files below a folder, relative to it, in order.
 std::vector<std::string> files_below(const std::filesystem::path& folder);
+
+/// Expects the same files in the folders of two runs, byte for byte. Those that hold times (run.json) and drawings of
+/// gnuplot are left out.
+/// @param parts  only files whose names begin with one of these.  @returns the number of files compared
+std::size_t expect_same_products(const std::filesystem::path& run, const std::filesystem::path& other,
+                                 const std::vector<std::string>& parts = {""});
 
 }  // namespace astroid::test

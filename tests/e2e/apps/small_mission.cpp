@@ -6,6 +6,9 @@
 #include <fstream>
 #include <sstream>
 
+#include "astroid/core/distributions.hpp"
+#include "astroid/core/random.hpp"
+
 namespace astroid::test {
 
 namespace {
@@ -78,6 +81,22 @@ std::filesystem::path write_small_mission(const TemporaryFolder& folder) {
   }
   folder.write("stars.csv", stars);
   return folder.write("small.xml", kConfiguration);
+}
+
+void write_pixel_field(const std::filesystem::path& file, int side, int stars, const std::string& more) {
+  constexpr double kFaintest = 4000.0;      // e-
+  constexpr double kLeastShare = 1.0 / 99;  // of the faintest star's flux in the brightest: 100 times
+  const RandomStream stream = make_stream(14, StreamId{0xf1e1d}, 0, 0);
+  std::ofstream lines(file);
+  lines << "id,x,y,electrons\n";
+  for (int i = 0; i < stars; ++i) {
+    const auto step = static_cast<std::uint32_t>(i);
+    lines << 's' << i << ',' << side * uniform_at_step(stream, {.step = step, .axis = 0}) - 0.5 << ','
+          << side * uniform_at_step(stream, {.step = step, .axis = 1}) - 0.5 << ','
+          << kFaintest * (1.0 + kLeastShare) / (uniform_at_step(stream, {.step = step, .axis = 2}) + kLeastShare)
+          << '\n';
+  }
+  lines << more;
 }
 
 CsvTable read_csv(const std::filesystem::path& file) {

@@ -14,6 +14,10 @@ namespace astroid::test {
 /// small.xml (jitter, dark current, PRNU, read noise; 6 exposures of 25 s) and returns the latter.
 std::filesystem::path write_small_mission(const TemporaryFolder& folder);
 
+/// Writes a catalogue (id,x,y,electrons) of stars s0, s1 ... at random places of a square of `side` px, most of them
+/// near the faintest, 4000 e-, with `more` lines at the end.
+void write_pixel_field(const std::filesystem::path& file, int side, int stars, const std::string& more);
+
 /// A CSV table of a product: columns by name.
 struct CsvTable {
   std::vector<std::string> names;

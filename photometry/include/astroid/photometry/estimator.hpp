@@ -55,7 +55,10 @@ struct GroundModel {
   PixelNoise noise;  ///< background is the expected sky + dark, e- per pixel and exposure
   Gain gain{1.0};
   Adu bias;
-  double accuracy = 1e-6;             ///< of the faintest target's flux: what the cut-off wing of one neighbour may add
+  double accuracy = 1e-6;  ///< of the faintest target's flux: what the cut-off wing of one neighbour may add
+  /// e-, of the faintest target of the whole detector, so that estimators are the same for any part of it; 0: of
+  /// `targets`
+  double faintest_electrons = 0.0;
   double contamination_limit = 1e-3;  ///< share of neighbours in the flux above which kContaminated is set
   /// Relative error that the believed flux of any other star may have: 0.05 mag, the quality of a good catalogue.
   double flux_doubt = 0.05;

@@ -72,6 +72,10 @@ class Scene {
 /// The PSF of a mission, accurate enough for its configuration. @throws InputError, EnvironmentError for a table
 std::shared_ptr<const PixelPsf> make_psf(const Mission& mission);
 
+/// Indices of the stars that are targets when the full frame is computed: a decision that looks at these is the same in
+/// windows and sub-fields.
+std::vector<std::size_t> full_frame_targets(const Scene& scene);
+
 /// Electrons that a star of magnitude m gives in one exposure (F1).
 double star_electrons(Magnitude magnitude, const TelescopeSettings& telescope, Seconds exposure_time);
 
