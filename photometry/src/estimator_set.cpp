@@ -115,12 +115,18 @@ void EstimatorSet::find_stretch() {
   stretch_ = std::bit_ceil(std::max(longest, kMaxBatch));
 }
 
+namespace {
+/// Most frames of a faint field have no flagged pixel at all: one pass over the bytes saves a gather per term.
+bool has_flags(const Frame& frame) {
+  return std::any_of(frame.flags.pixels().begin(), frame.flags.pixels().end(),
+                     [](std::uint8_t flag) { return flag != 0; });
+}
+}  // namespace
+
 void EstimatorSet::apply(const Frame& frame, std::span<double> flux, std::span<std::uint32_t> flags) const {
   ASTROID_CHECK_EQ(flux.size(), size());
   ASTROID_CHECK_EQ(flags.size(), size());
-  // Most frames of a faint field have no flagged pixel at all: one pass over the bytes saves a gather per term.
-  const bool flagged = std::any_of(frame.flags.pixels().begin(), frame.flags.pixels().end(),
-                                   [](std::uint8_t flag) { return flag != 0; });
+  const bool flagged = has_flags(frame);
   for (const Target& target : targets_) {
     const Measured measured = measure(frame, flagged, target);
     flux[target.index] = measured.flux;
@@ -156,14 +162,29 @@ EstimatorSet::Measured EstimatorSet::measure(const Frame& frame, bool flagged, c
   return measured;
 }
 
+void EstimatorSet::apply_one_by_one(std::span<const Frame> frames, const TakeFluxes& take) const {
+  std::array<bool, kMaxBatch> flagged{};
+  for (std::size_t f = 0; f < frames.size(); ++f) flagged[f] = has_flags(frames[f]);
+  std::array<double, kMaxBatch> flux{};
+  std::array<std::uint32_t, kMaxBatch> flags{};
+  for (const Target& target : targets_) {
+    for (std::size_t f = 0; f < frames.size(); ++f) {
+      const Measured measured = measure(frames[f], flagged[f], target);
+      flux[f] = measured.flux;
+      flags[f] = measured.flags;
+    }
+    take(target.index, std::span(flux).first(frames.size()), std::span(flags).first(frames.size()));
+  }
+}
+
 void EstimatorSet::apply_batch(std::span<const Frame> frames, BatchScratch& scratch, const TakeFluxes& take) const {
   ASTROID_CHECK_LE(std::size_t{1}, frames.size());
   ASTROID_CHECK_LE(frames.size(), kMaxBatch);
-  if (frames.size() == 1) {  // nothing to gain
-    for (const Target& target : targets_) {
-      const Measured measured = measure(frames.front(), true, target);
-      take(target.index, {&measured.flux, 1}, {&measured.flags, 1});
-    }
+  // Interleaving touches every pixel, which few stars in a large frame do not pay back.
+  constexpr std::size_t kPixelsPerGather = 2;
+  const std::size_t gathers = aperture_pixel_.size() + background_pixel_.size();
+  if (frames.size() == 1 || kPixelsPerGather * gathers < frames.front().pixels.size()) {
+    apply_one_by_one(frames, take);
     return;
   }
   const std::size_t pixels = frames.front().pixels.size();

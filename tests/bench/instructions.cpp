@@ -57,7 +57,8 @@ void measure(const std::string& name, std::string_view unit, std::size_t units, 
 
 void measure_noise() {
   const RandomStream stream = make_stream(1, StreamId{7}, 0, 0);
-  const PixelRows pixels{.address = {}, .rows = kSide};
+  const Rectangle area{0, 0, kSide, kSide};
+  const PixelPlaces pixels{.areas = {&area, 1}};
   std::vector<std::uint32_t> words(kPixels);
   std::vector<float> normals(kPixels);
   std::vector<double> values(kPixels);

@@ -16,8 +16,8 @@
 namespace astroid {
 namespace {
 
-constexpr int kColumns = 61;
-constexpr int kRows = 50;
+constexpr int kColumns = 37;  // so few that a batch is interleaved for masks, too
+constexpr int kRows = 30;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
@@ -158,6 +158,21 @@ TEST(EstimatorBatchOfWindows, HasTheBitsOfSingleFrames) {
   const EstimatorSet set(build_estimators(*layout, scene.model(), settings), scene.gain, scene.bias);
   const std::vector<Frame> frames = frames_of(scene, layout, 7, Spoilt::kInEveryOtherFrame);
   EXPECT_EQ(compare(set, frames).fluxes, 7 * set.size());
+}
+
+TEST(EstimatorBatchOfFewStars, HasTheBitsOfSingleFrames) {
+  // Two stars in a large frame: not worth interleaving it.
+  test::GroundScene scene;
+  scene.psf = make_gaussian_psf(0.6);
+  scene.add_target({50.2, 60.7}, 1e5);
+  scene.add_target({150.9, 20.1}, 3e4);
+  const auto layout = test::full_frame(200, 100);
+  for (const BackgroundMethod background : {BackgroundMethod::kKnown, BackgroundMethod::kLocal}) {
+    PhotometrySettings settings;
+    settings.background = background;
+    const EstimatorSet set(build_estimators(*layout, scene.model(), settings), scene.gain, scene.bias);
+    EXPECT_EQ(compare(set, frames_of(scene, layout, 5, Spoilt::kInEveryOtherFrame)).fluxes, 10U);
+  }
 }
 
 TEST(EstimatorBatchOfNothing, MeasuresNothing) {

@@ -221,6 +221,7 @@ class EstimatorSet {
     double known_background = 0.0;
     std::uint32_t flags = 0;
   };
+  void apply_one_by_one(std::span<const Frame> frames, const TakeFluxes& take) const;
   void find_stretch();
   [[nodiscard]] std::span<const std::uint32_t> aperture_of(const Target& target) const {
     return std::span(aperture_pixel_).subspan(target.aperture_begin, target.aperture_end - target.aperture_begin);
