@@ -31,13 +31,17 @@ std::string to_text(const Plan& plan, const Scene& scene) {
       "           of {} camera(s); for the faintest target that is {:.3g} e- per exposure\n\n",
       1e6 * s.accuracy, s.exposures_per_bin, s.cameras, plan.tolerance);
   out += "Effects, in the order of the run\n";
+  const bool recalled = plan.still || plan.knobs.jitter == JitterTreatment::kPolynomial;
   for (const PlannedEffect& planned : plan.effects) {
     const EffectSpec& spec = planned.effect->spec();
     const double ms = kMilli * predicted_seconds(planned, plan, scene);
     out += fmt::format("  {:<3} {:<14} {:<12} {}\n", planned.need.needed ? "on" : "off", spec.name,
                        to_string(spec.level), planned.need.why);
     if (planned.need.needed) {
-      if (ms > 0.0) out += fmt::format("      {:<27} about {:.2g} ms per exposure\n", "", ms);
+      if (ms > 0.0)
+        out += fmt::format("      {:<27} about {:.2g} ms per exposure\n", "", ms);
+      else if (recalled && spec.level > EffectLevel::kPointing && spec.level <= EffectLevel::kPixelMean)
+        out += fmt::format("      {:<27} computed once, with the noiseless image\n", "");
     } else if (planned.need.bias_bound > 0.0 || planned.need.variance_bound > 0.0) {
       out += fmt::format("      {:<27} left out: at most {:.2g} e- of any flux and {:.2g} of its variance\n", "",
                          planned.need.bias_bound, planned.need.variance_bound);
@@ -51,6 +55,13 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   out += fmt::format("  PSF       {:.2g} ppm\n", 1e6 * scene.psf().approximation_error());
   if (plan.knobs.jitter == JitterTreatment::kNone) {
     out += "  jitter    none: the noiseless image is computed once\n";
+  } else if (plan.knobs.jitter == JitterTreatment::kPolynomial) {
+    const std::size_t terms = plan.knobs.polynomial.terms.size();
+    out += fmt::format(
+        "  jitter    {}, {} terms, their means taken over {} step(s) of an exposure: at most {:.2g} ppm of the\n"
+        "            brightest target; {} fixed maps, {:.3g} MiB for all workers\n",
+        to_string(plan.knobs.jitter), terms, plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s), terms,
+        maps_bytes(terms, static_cast<double>(scene.layout()->size())) / kMebi);
   } else {
     out += fmt::format("  jitter    {} with {} step(s) in an exposure: at most {:.2g} ppm of the brightest target\n",
                        to_string(plan.knobs.jitter), plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s));
@@ -77,6 +88,11 @@ std::string to_json(const Plan& plan, const Scene& scene) {
   json["tolerance_electrons"] = plan.tolerance;
   json["noiseless_image_cached"] = plan.still;
   json["jitter"] = {{"treatment", to_string(plan.knobs.jitter)}, {"steps_per_exposure", plan.knobs.attitude_steps}};
+  if (plan.knobs.jitter == JitterTreatment::kPolynomial) {
+    const Attitude& scale = plan.knobs.polynomial.scale;
+    json["jitter"]["powers_of_yaw_pitch_roll"] = plan.knobs.polynomial.terms;
+    json["jitter"]["cell_half_width_arcsec"] = {scale.yaw, scale.pitch, scale.roll};
+  }
   json["errors_electrons"] = {{"stamps", plan.stamp_error}, {"psf", plan.psf_error}, {"jitter", plan.jitter_error}};
   for (const StampTier& tier : plan.knobs.stamps)
     json["stamps"].push_back(
