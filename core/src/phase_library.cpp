@@ -130,7 +130,7 @@ void PhaseLibrary::add(PixelPosition star, double electrons, Rectangle box,
     for (const Tap& tap_x : x.taps) {
       const int column = stamp.x0 - (x.pixel + tap_x.shift + x_.first);
       const int row = stamp.y0 - (y.pixel + tap_y.shift + y_.first);
-      prf.images[k] = this->image(tap_x.phase, tap_y.phase) + row * x_.size + column;
+      prf.images[k] = this->image(tap_x.phase, tap_y.phase) + static_cast<std::ptrdiff_t>(row) * x_.size + column;
       prf.weights[k++] = tap_x.weight * tap_y.weight;
     }
   add_prf_stamp(prf, stamp_pixels(image, stamp));

@@ -31,6 +31,13 @@ double term(const AttitudePowers& powers, const std::array<double, kAxes>& x) {
   return value;
 }
 
+/// The derivative of the order that the powers add up to.
+double derivative_of(std::span<const double> derivatives, const AttitudePowers& powers) {
+  std::size_t order = 0;
+  for (const int p : powers) order += static_cast<std::size_t>(p);
+  return derivatives[order];
+}
+
 bool holds(const std::vector<AttitudePowers>& terms, const AttitudePowers& powers) {
   return std::ranges::find(terms, powers) != terms.end();
 }
@@ -61,7 +68,7 @@ std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> deriva
     for (int j = 0; i + j <= highest; ++j)
       for (int k = 0; i + j + k <= highest; ++k) {
         const AttitudePowers powers{i, j, k};
-        double bound = derivatives[static_cast<std::size_t>(i + j + k)] * term(powers, r);
+        double bound = derivative_of(derivatives, powers) * term(powers, r);
         for (const int p : powers) bound /= kFactorials[p];
         if (i + j + k == 0 || !(bound > 0.0)) continue;
         candidates.push_back({powers, bound});
