@@ -53,6 +53,8 @@ void simulate_exposures(benchmark::State& state, const PlannedScene& planned) {
     number = (number + 1) % exposures;
   }
   set_rates(state, *planned.scene, milliseconds);
+  if (planned.plan->knobs.jitter == JitterTreatment::kPolynomial)
+    state.counters["terms"] = static_cast<double>(planned.plan->knobs.polynomial.terms.size());
   state.counters["predicted ms"] = kMilliseconds * planned.plan->seconds_per_exposure;
 }
 

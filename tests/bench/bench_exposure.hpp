@@ -27,7 +27,7 @@ double cpu_milliseconds(const std::function<void()>& call);
 void set_rates(benchmark::State& state, const Scene& scene, const std::vector<double>& milliseconds);
 
 /// Times exposures of a scene, one an iteration, after a first one that fills what is computed once; see set_rates().
-/// "predicted ms" is what the plan says.
+/// "predicted ms" is what the plan says, "terms" the number of maps where the noiseless image is a sum of some.
 void simulate_exposures(benchmark::State& state, const PlannedScene& planned);
 
 }  // namespace astroid::bench

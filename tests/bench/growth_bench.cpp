@@ -142,8 +142,6 @@ void BM_GrowthJitter(benchmark::State& state) {
   const auto treatment = static_cast<JitterTreatment>(state.range(1));
   const PlannedScene planned = with_jitter(jitter_scene(crowded), treatment, static_cast<int>(state.range(2)));
   simulate_exposures(state, planned);
-  if (treatment == JitterTreatment::kPolynomial)
-    state.counters["terms"] = static_cast<double>(planned.plan->knobs.polynomial.terms.size());
   state.counters.erase("predicted ms");  // of another treatment
   state.SetLabel(std::string(crowded ? "crowded, " : "sparse, ") + std::string(to_string(treatment)));
 }

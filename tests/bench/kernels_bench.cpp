@@ -19,14 +19,15 @@
 namespace astroid {
 namespace {
 
-constexpr std::size_t kColumns = 1024;
-constexpr std::size_t kRows = 8;
-constexpr std::size_t kPixels = kRows * kColumns;
+constexpr Rectangle kArea{0, 0, 1024, 8};
+constexpr std::size_t kPixels = kArea.size();
 constexpr std::string_view kScalar = "scalar";
 constexpr RandomStream kStream{{0x51u, 0x7au}};
 
+const PixelPlaces kPlaces{.areas = std::span(&kArea, 1)};
+
 /// A kernel on one strip of an exposure.
-using Kernel = std::function<void(const PixelRows&)>;
+using Kernel = std::function<void(const PixelPlaces&)>;
 
 /// What the kernels read and write; one for all.
 struct Buffers {
@@ -46,10 +47,10 @@ Buffers& buffers() {
 void time_kernel(benchmark::State& state, const std::string& target, const std::function<Kernel()>& prepare) {
   if (target != kScalar) force_vector_target(target);
   const Kernel kernel = prepare();
-  PixelRows rows{.address = {}, .rows = kRows};
+  PixelPlaces places = kPlaces;
   for (auto _ : state) {
-    ++rows.address.exposure;
-    kernel(rows);
+    ++places.exposure;
+    kernel(places);
     benchmark::ClobberMemory();
   }
   force_vector_target({});
@@ -73,25 +74,25 @@ Function choose(const std::string& target, Function vector, Function scalar) {
 void add_draws(const std::string& target) {
   add("BM_PixelNoise/words", target, [=]() -> Kernel {
     const auto draw = choose(target, &pixel_words, &reference::pixel_words);
-    return [=](const PixelRows& rows) { draw(kStream, rows, buffers().words); };
+    return [=](const PixelPlaces& places) { draw(kStream, places, buffers().words); };
   });
   add("BM_PixelNoise/uniforms", target, [=]() -> Kernel {
     const auto draw = choose(target, &pixel_uniforms, &reference::pixel_uniforms);
-    return [=](const PixelRows& rows) { draw(kStream, rows, buffers().values); };
+    return [=](const PixelPlaces& places) { draw(kStream, places, buffers().values); };
   });
   add("BM_PixelNoise/normals", target, [=]() -> Kernel {
     const auto draw = choose(target, &pixel_normals, &reference::pixel_normals);
-    return [=](const PixelRows& rows) { draw(kStream, rows, buffers().single); };
+    return [=](const PixelPlaces& places) { draw(kStream, places, buffers().single); };
   });
   add("BM_PixelNoise/added normals", target, [=]() -> Kernel {
     const auto draw = choose(target, &add_pixel_normals, &reference::add_pixel_normals);
-    return [=](const PixelRows& rows) { draw(kStream, rows, 1.0, buffers().values); };
+    return [=](const PixelPlaces& places) { draw(kStream, places, 1.0, buffers().values); };
   });
   for (const char* mean : {"0.01", "1", "5", "12", "60", "945", "1e5", "1e8"})
     add("BM_PixelNoise/Poisson of mean " + std::string(mean), target, [=]() -> Kernel {
       const auto draw = choose(target, &pixel_poisson, &reference::pixel_poisson);
       buffers().other.assign(kPixels, std::stod(mean));
-      return [=](const PixelRows& rows) { draw(kStream, rows, buffers().other, buffers().values); };
+      return [=](const PixelPlaces& places) { draw(kStream, places, buffers().other, buffers().values); };
     });
 }
 
@@ -99,9 +100,9 @@ void add_arithmetic(const std::string& target) {
   add("BM_Plane/digitise", target, [=]() -> Kernel {
     constexpr double kTop = 65535.0;
     const auto digitise = choose(target, &digitise_pixels, &reference::digitise_pixels);
-    pixel_uniforms(kStream, {.address = {}, .rows = kRows}, buffers().values);
+    pixel_uniforms(kStream, kPlaces, buffers().values);
     for (double& value : buffers().values) value *= kTop;
-    return [=](const PixelRows&) {
+    return [=](const PixelPlaces&) {
       benchmark::DoNotOptimize(digitise(buffers().values, kTop, buffers().single, buffers().flags));
     };
   });
@@ -111,17 +112,17 @@ void add_arithmetic(const std::string& target) {
     const auto combine = choose(target, &combine_maps, &reference::combine_maps);
     buffers().other.assign(kPixels, 1.0);
     return [=, all = std::vector<std::vector<float>>(kMaps, std::vector<float>(kPixels, 1.0F)),
-            weights = std::vector<float>(kMaps, 0.5F)](const PixelRows&) {
+            weights = std::vector<float>(kMaps, 0.5F)](const PixelPlaces&) {
       std::vector<const float*> maps;
       for (const std::vector<float>& map : all) maps.push_back(map.data());
       combine(buffers().other, maps, weights, buffers().values);
     };
   });
-  add("BM_Plane/find the full", target, [=]() -> Kernel {
+  add("BM_Plane/find full pixels", target, [=]() -> Kernel {
     const auto find = choose(target, &find_at_least, &reference::find_at_least);
-    pixel_uniforms(kStream, {.address = {}, .rows = kRows}, buffers().values);
+    pixel_uniforms(kStream, kPlaces, buffers().values);
     constexpr double kRare = 0.999;
-    return [=](const PixelRows&) { benchmark::DoNotOptimize(find(buffers().values, kRare, buffers().found)); };
+    return [=](const PixelPlaces&) { benchmark::DoNotOptimize(find(buffers().values, kRare, buffers().found)); };
   });
 }
 
