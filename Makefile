@@ -27,11 +27,11 @@ test: test-packages ## everything that continuous integration checks: format, wa
 check: test-packages ## the same steps on the developer's build, before a commit
 	cmake --workflow --preset check
 
-bench: test-packages ## build and run the benchmarks; results as JSON in out/bench/
+bench: test-packages ## build and run the benchmarks, some ten minutes; results as JSON in out/bench/
 	cmake --preset bench
 	cmake --build --preset bench
 	cmake --build --preset bench --target run-benchmarks
-	@echo "results: out/bench/*.json; docs/performance.md has a run to compare with"
+	@echo "results: out/bench/all.json; docs/performance.md has a run to compare with"
 
 format: ## format every source file
 	cmake/format.sh --fix

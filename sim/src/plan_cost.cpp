@@ -1,7 +1,10 @@
 #include "plan_cost.hpp"
 
+#include <algorithm>
 #include <string_view>
+#include <vector>
 
+#include "astroid/core/psf.hpp"
 #include "star_lists.hpp"
 
 namespace astroid {
@@ -9,36 +12,45 @@ namespace astroid {
 namespace {
 
 /// Nanoseconds a pixel and exposure, measured with tests/bench (BM_Effects) on one core of the machine named in
-/// docs/performance.md, which has AVX-512; on the x86-64-v2 baseline noise takes about three times as long.
+/// docs/performance.md, which has AVX-512; with SSE4 alone noise takes two to three times as long.
 struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
-constexpr PixelCost kPixelCosts[] = {{"sky", 0.3},          {"prnu", 0.4},      {"dark-current", 0.4},
-                                     {"photon-noise", 5.4}, {"full-well", 1.2}, {"readout-noise", 2.5},
-                                     {"gain", 1.2},         {"bias", 0.3},      {"adc", 1.3}};
-constexpr double kClear = 0.3;  ///< ns a pixel: the noiseless image is set to zero, or copied where nothing moves
-constexpr double kAnalyticStar = 30.0;       ///< ns a star
-constexpr double kAnalyticPixel = 0.6;       ///< ns a stamp pixel
-constexpr double kAnalyticBroadening = 1.6;  ///< one more profile an axis for the correlation
-constexpr double kPrfStar = 30.0;
-constexpr double kPrfPixel = 4.0;  ///< ns a stamp pixel, 16 taps
-constexpr double kPrfBroadening = 5.0;
-constexpr double kMapPixel = 0.15;  ///< ns a pixel of one map
+constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},      {"dark-current", 0.4},
+                                     {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
+                                     {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
+constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
+constexpr double kRecall = 0.7;    ///< ns a pixel: it is read from where it is kept, if nothing moves
+constexpr double kRegion = 250.0;  ///< ns a region: what a window takes beyond its pixels
+/// Ns a pixel of one map, where the maps fit into a share of the last cache and where they come from memory.
+constexpr double kMapPixel = 0.15;
+constexpr double kFarMapPixel = 0.27;
+constexpr double kCachedBytes = 16.0 * 1024.0 * 1024.0;
+/// What it takes to render a star, once for each strip that it reaches (bench: BM_AddStar).
+struct StarCost {
+  double star;        ///< ns
+  double row;         ///< ns a row of the stamp
+  double pixel;       ///< ns a pixel of the stamp
+  double broadening;  ///< factor
+};
+constexpr StarCost kAnalytic{.star = 70.0, .row = 5.0, .pixel = 0.1, .broadening = 1.7};
+constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5.0};
 constexpr double kNanosecond = 1e-9;
 
-/// Of one star, at one place.
-double star_cost(const Plan& plan, double electrons) {
-  const double side = 2.0 * plan.knobs.stamp_half_width(electrons) + 1.0;
-  return plan.renderer == "analytic" ? kAnalyticStar + side * side * kAnalyticPixel
-                                     : kPrfStar + side * side * kPrfPixel;
+const StarCost& star_cost(const Plan& plan) {
+  return plan.renderer == "analytic" ? kAnalytic : kPrf;
+}
+
+double nanoseconds_of(const StarCost& cost, double rows, double columns) {
+  return cost.star + rows * (cost.row + columns * cost.pixel);
 }
 
 /// How many times a star is rendered for one exposure.
 double renderings(const Plan& plan) {
   switch (plan.knobs.jitter) {
     case JitterTreatment::kBroadened:
-      return plan.renderer == "analytic" ? kAnalyticBroadening : kPrfBroadening;
+      return star_cost(plan).broadening;
     case JitterTreatment::kSubSteps:
       return plan.knobs.attitude_steps;
     default:
@@ -46,10 +58,21 @@ double renderings(const Plan& plan) {
   }
 }
 
+/// Of the pixels that are computed.
 double stars_cost(const Plan& plan, const Scene& scene) {
+  const StarCost& cost = star_cost(plan);
+  std::vector<Rectangle> areas;
+  for (const Strip& strip : make_strips(*scene.layout(), kStripPixels))
+    areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
   double nanoseconds = 0.0;
-  for (const auto& stars : star_lists(scene, plan.knobs, scene.layout()->regions(), {}))
-    for (const RenderedStar& star : stars) nanoseconds += star_cost(plan, star.electrons);
+  auto next = areas.begin();
+  for (const auto& stars : star_lists(scene, plan.knobs, areas, {})) {
+    const Rectangle& area = *next++;
+    for (const RenderedStar& star : stars) {
+      const Rectangle stamp = intersect(stamp_box(star.position, star.half_width), area);
+      if (!stamp.empty()) nanoseconds += nanoseconds_of(cost, stamp.ny, stamp.nx);
+    }
+  }
   return nanoseconds * renderings(plan);
 }
 
@@ -61,13 +84,20 @@ bool recalls(const Plan& plan) {
 }  // namespace
 
 double full_frame_seconds(const Plan& plan, const Scene& scene) {
+  const StarCost& cost = star_cost(plan);
+  const double strip_rows = std::max(1.0, static_cast<double>(kStripPixels) / scene.detector().nx);
   double nanoseconds = 0.0;
-  for (const SceneStar& star : scene.stars()) nanoseconds += star_cost(plan, star.electrons);
+  for (const SceneStar& star : scene.stars()) {
+    const double side = 2.0 * plan.knobs.stamp_half_width(star.electrons) + 1.0;
+    const double strips = 1.0 + (side - 1.0) / strip_rows;  // on average, wherever the star lies
+    nanoseconds += nanoseconds_of(cost, side, side) + (strips - 1.0) * cost.star;
+  }
   return kNanosecond * nanoseconds * renderings(plan);
 }
 
 double maps_seconds(std::size_t terms, double pixels) {
-  return kNanosecond * pixels * (kClear + kMapPixel * static_cast<double>(terms));
+  const double map_pixel = maps_bytes(terms, pixels) > kCachedBytes ? kFarMapPixel : kMapPixel;
+  return kNanosecond * pixels * map_pixel * static_cast<double>(terms);
 }
 
 double maps_bytes(std::size_t terms, double pixels) {
@@ -89,16 +119,20 @@ double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Sc
 }
 
 double predicted_seconds(const Plan& plan, const Scene& scene) {
-  double seconds = kNanosecond * kClear * static_cast<double>(scene.layout()->size());
+  const PixelLayout& layout = *scene.layout();
+  const double begin = plan.still ? kRecall : recalls(plan) ? 0.0 : kClear;  // of a pixel
+  double seconds = kNanosecond * (begin * static_cast<double>(layout.size()) +
+                                  kRegion * static_cast<double>(layout.regions().size()));
   for (const PlannedEffect& effect : plan.effects) seconds += predicted_seconds(effect, plan, scene);
   return seconds;
 }
 
 double predicted_memory(const Plan& plan, const Scene& scene) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
-  if (!recalls(plan)) bytes_per_pixel += sizeof(double);          // the noiseless image
   if (plan.runs("full-well")) bytes_per_pixel += sizeof(double);  // drawn electrons, column by column
-  return bytes_per_pixel * static_cast<double>(scene.layout()->size());
+  constexpr double kStripPlanes = 3.0;                            // expected and drawn electrons, ADU
+  return bytes_per_pixel * static_cast<double>(scene.layout()->size()) +
+         kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);
 }
 
 }  // namespace astroid

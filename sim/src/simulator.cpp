@@ -11,9 +11,6 @@ namespace astroid {
 
 namespace {
 
-/// Pixels of a strip: its planes of doubles, 64 KiB each, stay in a second-level cache together.
-constexpr std::size_t kStripPixels = 8192;
-
 bool is_pointing(const EffectSpec& spec) {
   return spec.level == EffectLevel::kPointing;
 }

@@ -1,14 +1,14 @@
 #include "bench_scene.hpp"
 
 #include <ctime>
+#include <filesystem>
 #include <limits>
 #include <string>
 
-#include "astroid/catalogues/catalogue_reader.hpp"
-#include "astroid/catalogues/passbands.hpp"
-#include "astroid/catalogues/synthetic_field.hpp"
+#include "astroid/core/configuration.hpp"
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/math.hpp"
+#include "astroid/pipeline/field.hpp"
 #include "astroid/test/scenes.hpp"
 #include "astroid/test/temporary_folder.hpp"
 
@@ -73,33 +73,16 @@ StarCatalogue reference_stars(std::uint32_t stars, int side) {
 }
 
 Mission week_mission(std::int64_t exposures) {
-  constexpr int kSide = 480;  // px of 15 arcsec: 2 deg
-  Mission mission = test::plato_mission(kSide, kSide);
+  const std::filesystem::path root = test::source_dir();
+  Mission mission =
+      read_configuration(root / "apps" / "missions" / "plato-week.xml", {.overrides = {}, .data_folders = {root}})
+          .mission;
   mission.simulation.exposures = exposures;
-  mission.satellite.ra = Degrees(180.0);  // the catalogue's centre
-  mission.satellite.dec = Degrees(-70.0);
-  mission.photometry.background = BackgroundMethod::kLocal;
   return mission;
 }
 
 StarCatalogue week_stars(const Mission& mission) {
-  const auto file = test::shared_data("catalogues/platosim_pic11_field_V15.csv");
-  StarCatalogue catalogue;
-  if (file) {
-    catalogue = read_catalogue(*file, {.passband = "V"});
-    catalogue.source = file->filename();
-  } else {
-    FieldRequest request;
-    request.region.centre = {mission.satellite.ra.value(), mission.satellite.dec.value()};
-    request.region.width = Degrees(2.0);
-    request.region.height = Degrees(2.0);
-    request.stars = kWeekStars;
-    catalogue = make_synthetic_field(request);
-    catalogue.source = "synthetic";
-  }
-  convert_passband(catalogue, mission.telescope.zero_point_passband,
-                   {.bv = mission.field.assumed_bv, .teff = mission.field.assumed_teff});
-  return catalogue;
+  return load_field(mission);
 }
 
 double thread_cpu_seconds() {

@@ -34,11 +34,9 @@ StarCatalogue reference_stars(std::uint32_t stars, int side);
 inline constexpr int kReferenceSide = 1024;  ///< px
 inline constexpr std::uint32_t kReferenceStars = 5000;
 
-/// The week of Gutierrez-Canales et al.: PLATO's detector, 480 x 480 px, magnitudes to V = 15.
+/// The preset plato-week, cut short: 32,240 stars on 480 x 480 px, photometry of each.
 inline constexpr std::int64_t kWeekExposures = 24192;
-inline constexpr std::int64_t kWeekStars = 32240;
 Mission week_mission(std::int64_t exposures);
-/// The field's catalogue if it is there, else as many synthetic stars; `source` says which.
 StarCatalogue week_stars(const Mission& mission);
 
 /// CPU seconds of this thread, or of all threads of the process.

@@ -1,6 +1,7 @@
 // Time of the reference exposure by stage: simulating it, each effect of it, measuring its stars, writing it.
 //
-// Times are CPU times of one thread, so that other programs on the machine disturb them little.
+// Times are CPU times of one thread, so that other programs on the machine disturb them little; counters of exposures
+// are medians.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -10,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "astroid/core/vector_target.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "astroid/test/temporary_folder.hpp"
+#include "bench_exposure.hpp"
 #include "bench_scene.hpp"
 #include "image_files.hpp"
 
@@ -27,36 +30,11 @@ using bench::PlannedScene;
 using bench::reference_mission;
 using bench::reference_stars;
 
-constexpr double kMilliseconds = 1e3;
-constexpr double kNanoseconds = 1e9;
 constexpr int kRepetitions = 5;  // docs/performance.md quotes the median of so many
 
 PlannedScene reference_scene(Detector detector) {
   return bench::plan_scene(reference_mission(kReferenceSide, detector),
                            reference_stars(kReferenceStars, kReferenceSide));
-}
-
-/// CPU time of this thread by exposure, pixel and star. @param begin  thread_cpu_seconds() before the loop
-void set_rates(benchmark::State& state, const Scene& scene, double begin) {
-  const double seconds = (bench::thread_cpu_seconds() - begin) / static_cast<double>(state.iterations());
-  state.counters["exposures/s"] = 1.0 / seconds;
-  state.counters["ns/pixel"] = kNanoseconds * seconds / static_cast<double>(scene.layout()->size());
-  state.counters["ns/star"] = kNanoseconds * seconds / static_cast<double>(scene.stars().size());
-}
-
-void simulate_exposures(benchmark::State& state, const PlannedScene& planned) {
-  const Simulator simulator(planned.scene, planned.plan, 0);
-  ExposureState exposure = simulator.make_state();
-  const std::int64_t exposures = planned.scene->mission().simulation.exposures;
-  std::int64_t number = 0;
-  const double begin = bench::thread_cpu_seconds();
-  for (auto _ : state) {
-    simulator.simulate(number, exposure);
-    number = (number + 1) % exposures;
-    benchmark::ClobberMemory();
-  }
-  set_rates(state, *planned.scene, begin);
-  state.counters["predicted ms"] = kMilliseconds * planned.plan->seconds_per_exposure;
 }
 
 // ---- The whole exposure, with effects on and off ----
@@ -67,83 +45,113 @@ struct Variant {
   std::function<void(Mission&)> change;
 };
 
-const std::vector<Variant>& variants() {
+PlannedScene scene_of(const Variant& variant) {
+  Mission mission = reference_mission(kReferenceSide, variant.detector);
+  variant.change(mission);
+  return bench::plan_scene(mission, reference_stars(kReferenceStars, kReferenceSide));
+}
+
+void stand_still(Mission& mission) {
+  mission.satellite.jitter.model = JitterModel::kNone;
+}
+
+const std::vector<Variant>& scenes() {
   static const std::vector<Variant> list = {
       {"reference", Detector::kReference, [](Mission&) {}},
-      {"reference without jitter", Detector::kReference,
-       [](Mission& m) { m.satellite.jitter.model = JitterModel::kNone; }},
       {"everything", Detector::kEverything, [](Mission&) {}},
-      {"everything but jitter", Detector::kEverything,
-       [](Mission& m) { m.satellite.jitter.model = JitterModel::kNone; }},
-      {"everything but sky", Detector::kEverything, [](Mission& m) { m.field.sky_background = {}; }},
-      {"everything but PRNU", Detector::kEverything, [](Mission& m) { m.ccd.prnu = 0.0; }},
-      {"everything but dark current", Detector::kEverything, [](Mission& m) { m.ccd.dark_current = {}; }},
-      {"everything but full well", Detector::kEverything, [](Mission& m) { m.ccd.full_well = Electrons(1e12); }},
-      {"everything but readout noise", Detector::kEverything, [](Mission& m) { m.ccd.readout_noise = {}; }},
+      {"static", Detector::kReference, stand_still},
   };
   return list;
 }
 
+/// On each instruction set that the processor has, the widest first.
 void BM_Exposure(benchmark::State& state) {
-  const Variant& variant = variants()[static_cast<std::size_t>(state.range(0))];
-  Mission mission = reference_mission(kReferenceSide, variant.detector);
-  variant.change(mission);
-  simulate_exposures(state, bench::plan_scene(mission, reference_stars(kReferenceStars, kReferenceSide)));
-  state.SetLabel(variant.name);
+  const Variant& variant = scenes()[static_cast<std::size_t>(state.range(0))];
+  const std::vector<std::string> targets = vector_targets();
+  const auto target = static_cast<std::size_t>(state.range(1));
+  if (target >= targets.size()) {
+    state.SkipWithError("the processor has no further instruction set");
+    return;
+  }
+  force_vector_target(targets[target]);
+  bench::simulate_exposures(state, scene_of(variant));
+  force_vector_target({});
+  state.SetLabel(variant.name + ", " + targets[target]);
 }
 BENCHMARK(BM_Exposure)
-    ->DenseRange(0, 8)
-    ->ArgName("variant")
+    ->ArgNames({"scene", "target"})
+    ->ArgsProduct({{0, 1, 2}, {0, 1, 2, 3}})
     ->Unit(benchmark::kMillisecond)
     ->Repetitions(kRepetitions)
     ->ReportAggregatesOnly();
 
-// Growth with stars and pixels.
-void BM_Growth(benchmark::State& state) {
-  const auto stars = static_cast<std::uint32_t>(state.range(0));
-  const int side = static_cast<int>(state.range(1));
-  simulate_exposures(state,
-                     bench::plan_scene(reference_mission(side, Detector::kReference), reference_stars(stars, side)));
+const std::vector<Variant>& ablations() {
+  static const std::vector<Variant> list = {
+      {"jitter", Detector::kEverything, stand_still},
+      {"sky", Detector::kEverything, [](Mission& m) { m.field.sky_background = {}; }},
+      {"PRNU", Detector::kEverything, [](Mission& m) { m.ccd.prnu = 0.0; }},
+      {"dark current", Detector::kEverything, [](Mission& m) { m.ccd.dark_current = {}; }},
+      {"full well", Detector::kEverything, [](Mission& m) { m.ccd.full_well = Electrons(1e12); }},
+      {"blooming", Detector::kEverything, [](Mission& m) { m.ccd.blooming = false; }},
+      {"readout noise", Detector::kEverything, [](Mission& m) { m.ccd.readout_noise = {}; }},
+      {"bias", Detector::kEverything, [](Mission& m) { m.ccd.bias = {}; }},
+  };
+  return list;
 }
-BENCHMARK(BM_Growth)
-    ->ArgNames({"stars", "side"})
-    ->ArgsProduct({{1, 1000, 20000, 80000}, {kReferenceSide}})
-    ->ArgsProduct({{kReferenceStars}, {256, 512, 2048}})
-    ->Unit(benchmark::kMillisecond);
+
+/// What an exposure with everything saves when one effect is off: both in turn, so that a disturbance meets both.
+void BM_EffectOff(benchmark::State& state) {
+  const Variant& variant = ablations()[static_cast<std::size_t>(state.range(0))];
+  const PlannedScene on = reference_scene(Detector::kEverything);
+  const PlannedScene off = scene_of(variant);
+  const Simulator simulator_on(on.scene, on.plan, 0);
+  const Simulator simulator_off(off.scene, off.plan, 0);
+  ExposureState exposure_on = simulator_on.make_state();
+  ExposureState exposure_off = simulator_off.make_state();
+  const std::int64_t exposures = on.scene->mission().simulation.exposures;
+  std::vector<double> with;
+  std::vector<double> without;
+  std::vector<double> saved;
+  std::int64_t number = 0;
+  for (auto _ : state) {
+    with.push_back(bench::cpu_milliseconds([&] { simulator_on.simulate(number, exposure_on); }));
+    without.push_back(bench::cpu_milliseconds([&] { simulator_off.simulate(number, exposure_off); }));
+    saved.push_back(with.back() - without.back());
+    number = (number + 1) % exposures;
+  }
+  state.counters["with ms"] = bench::typical(with);
+  state.counters["without ms"] = bench::typical(without);
+  state.counters["saved ms"] = bench::median(saved);
+  state.SetLabel(variant.name);
+}
+BENCHMARK(BM_EffectOff)->ArgName("effect")->DenseRange(0, 7)->Iterations(100)->Unit(benchmark::kMillisecond);
 
 // ---- Each effect ----
 
-/// Median milliseconds of each effect over some exposures, as counters: CPU time between the ends of two effects.
+/// Milliseconds of each effect over some exposures, as counters "<effect> ms": as the strips are made, wall
+/// time. Clearing or recalling the noiseless image counts as the first effect of it, attitude and flags as "begin".
 void BM_Effects(benchmark::State& state) {
-  const PlannedScene planned = reference_scene(static_cast<Detector>(state.range(0)));
+  const Variant& variant = scenes()[static_cast<std::size_t>(state.range(0))];
+  const PlannedScene planned = scene_of(variant);
   const Simulator simulator(planned.scene, planned.plan, 0);
   ExposureState exposure = simulator.make_state();
-  constexpr int kExposures = 15;
-  std::vector<std::string> names;
-  std::vector<std::vector<double>> seconds;
+  const std::int64_t exposures = planned.scene->mission().simulation.exposures;
+  std::vector<std::vector<double>> milliseconds(exposure.effect_seconds.size());
+  std::int64_t number = 0;
   for (auto _ : state) {
-    for (int k = 0; k < kExposures; ++k) {
-      std::size_t effect = 0;
-      double last = bench::thread_cpu_seconds();
-      simulator.simulate(k, exposure, [&](const EffectSpec& spec, const ExposureState&) {
-        const double now = bench::thread_cpu_seconds();
-        if (effect == seconds.size()) {
-          seconds.emplace_back();
-          names.emplace_back(spec.name);
-        }
-        seconds[effect++].push_back(now - last);
-        last = now;
-      });
-    }
+    std::ranges::fill(exposure.effect_seconds, 0.0);
+    simulator.simulate(number, exposure);
+    number = (number + 1) % exposures;
+    for (std::size_t i = 0; i < milliseconds.size(); ++i)
+      milliseconds[i].push_back(bench::kMilliseconds * exposure.effect_seconds[i]);
   }
-  for (std::size_t i = 0; i < seconds.size(); ++i) {
-    const auto middle = seconds[i].begin() + static_cast<std::ptrdiff_t>(seconds[i].size() / 2);
-    std::nth_element(seconds[i].begin(), middle, seconds[i].end());
-    state.counters[names[i] + " ms"] = kMilliseconds * *middle;
-  }
-  state.SetLabel(static_cast<Detector>(state.range(0)) == Detector::kReference ? "reference" : "everything");
+  for (std::size_t i = 0; i < milliseconds.size(); ++i)
+    if (planned.plan->effects[i].need.needed)
+      state.counters[std::string(planned.plan->effects[i].effect->spec().name) + " ms"] =
+          bench::typical(milliseconds[i]);
+  state.SetLabel(variant.name);
 }
-BENCHMARK(BM_Effects)->DenseRange(0, 1)->ArgName("variant")->Iterations(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Effects)->DenseRange(0, 2)->ArgName("scene")->Iterations(100)->Unit(benchmark::kMillisecond);
 
 // ---- What comes after ----
 
@@ -160,12 +168,9 @@ void BM_MeasureAllStars(benchmark::State& state) {
   simulator.simulate(0, exposure);
   std::vector<double> flux(set.size());
   std::vector<std::uint32_t> flags(set.size());
-  const double begin = bench::thread_cpu_seconds();
-  for (auto _ : state) {
-    set.apply(exposure.frame, flux, flags);
-    benchmark::ClobberMemory();
-  }
-  set_rates(state, *planned.scene, begin);
+  std::vector<double> milliseconds;
+  for (auto _ : state) milliseconds.push_back(bench::cpu_milliseconds([&] { set.apply(exposure.frame, flux, flags); }));
+  bench::set_rates(state, *planned.scene, milliseconds);
 }
 BENCHMARK(BM_MeasureAllStars)
     ->ArgName("background")
@@ -178,11 +183,13 @@ BENCHMARK(BM_MeasureAllStars)
 void BM_BuildEstimatorsOfReference(benchmark::State& state) {
   const PlannedScene planned = reference_scene(Detector::kReference);
   const Ground ground = perfect_ground(*planned.scene);
-  const double begin = bench::thread_cpu_seconds();
+  std::vector<double> milliseconds;
   for (auto _ : state)
-    benchmark::DoNotOptimize(
-        build_estimators(*planned.scene->layout(), ground.model, planned.scene->mission().photometry));
-  set_rates(state, *planned.scene, begin);
+    milliseconds.push_back(bench::cpu_milliseconds([&] {
+      benchmark::DoNotOptimize(
+          build_estimators(*planned.scene->layout(), ground.model, planned.scene->mission().photometry));
+    }));
+  bench::set_rates(state, *planned.scene, milliseconds);
 }
 BENCHMARK(BM_BuildEstimatorsOfReference)->Unit(benchmark::kMillisecond);
 
@@ -193,22 +200,26 @@ void BM_PlanReference(benchmark::State& state) {
 }
 BENCHMARK(BM_PlanReference)->Unit(benchmark::kMillisecond);
 
-// 16-bit images, each in a file of its own as a run writes them, in the folder for temporary files. All stay until the
-// last is written: a file system that has just lost hundreds of files is slow to make new ones.
+// A simulated exposure and its 16-bit image, in a file of its own as a run writes them, in the folder for temporary
+// files. All stay until the last is written: a file system that has just lost hundreds of files is slow to make new
+// ones. The counters "ms" and those with it are of writing alone; "simulated ms" is of what was written.
 void BM_WriteImage(benchmark::State& state) {
   static const test::TemporaryFolder folder;
   static std::int64_t number = 0;
   const PlannedScene planned = reference_scene(Detector::kReference);
   const Simulator simulator(planned.scene, planned.plan, 0);
+  const std::int64_t exposures = planned.scene->mission().simulation.exposures;
   ExposureState exposure = simulator.make_state();
-  simulator.simulate(0, exposure);
   const ImageFiles images(*planned.scene, *planned.plan, folder.path());
-  const double begin = bench::thread_cpu_seconds();
+  std::vector<double> simulated;
+  std::vector<double> written;
   for (auto _ : state) {
+    simulated.push_back(bench::cpu_milliseconds([&] { simulator.simulate(number % exposures, exposure); }));
     exposure.frame.header.exposure = number++;
-    images.write(exposure.frame);
+    written.push_back(bench::cpu_milliseconds([&] { images.write(exposure.frame); }));
   }
-  set_rates(state, *planned.scene, begin);
+  bench::set_rates(state, *planned.scene, written);
+  state.counters["simulated ms"] = bench::typical(simulated);
 }
 BENCHMARK(BM_WriteImage)
     ->Unit(benchmark::kMillisecond)

@@ -2,6 +2,8 @@
 #include <benchmark/benchmark.h>
 
 #include <cmath>
+#include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "astroid/core/noise.hpp"
@@ -10,7 +12,8 @@
 namespace astroid {
 namespace {
 
-constexpr double kSigma = 0.6;  // px
+constexpr double kSigma = 0.6;   // px
+constexpr int kImageSide = 200;  // px
 
 // Stars that meet every sub-pixel phase.
 PixelPosition star(int k) {
@@ -91,6 +94,85 @@ void BM_TableLibrary(benchmark::State& state) {
   while (state.KeepRunning()) benchmark::DoNotOptimize(make_prf_psf(table, 1e-6));
 }
 BENCHMARK(BM_TableLibrary)->Unit(benchmark::kMillisecond);
+
+// ---- A star on its way to an image ----
+
+/// How a star is rendered.
+struct Rendering {
+  const char* name;
+  bool table;
+  bool broadened;
+};
+constexpr Rendering kRenderings[] = {{"Gaussian, still", false, false},
+                                     {"Gaussian, broadened", false, true},
+                                     {"PRF, still", true, false},
+                                     {"PRF, broadened", true, true}};
+constexpr MotionCovariance kMotion{.sxx = 4e-4, .sxy = 1e-4, .syy = 3e-4};  // px²
+
+std::shared_ptr<const PixelPsf> psf_of(const Rendering& rendering) {
+  return rendering.table ? make_prf_psf(moffat_table(), 1e-6) : make_gaussian_psf(kSigma);
+}
+
+/// The half-width whose stamps have `side` pixels an axis.
+double half_width_of(std::int64_t side) {
+  return 0.5 * static_cast<double>(side - 1);
+}
+
+StarLight light_of(int k, std::int64_t side, const Rendering& rendering) {
+  return {.centre = star(k),
+          .electrons = 1e4,
+          .half_width = half_width_of(side),
+          .motion = kMotion,
+          .broadened = rendering.broadened};
+}
+
+void renderings_and_sides(benchmark::internal::Benchmark* b) {
+  b->ArgNames({"rendering", "side"})->ArgsProduct({{0, 1, 2, 3}, {5, 7, 9, 11, 15}});
+}
+
+/// add_star(), which the simulation takes.
+void BM_AddStar(benchmark::State& state) {
+  const Rendering& rendering = kRenderings[state.range(0)];
+  const auto psf = psf_of(rendering);
+  Image<double, unit::ExpectedElectrons> image(kImageSide, kImageSide);
+  std::vector<double> scratch;
+  int k = 0;
+  for (auto _ : state) {
+    psf->add_star(light_of(k, state.range(1), rendering), image.view(), scratch);
+    benchmark::ClobberMemory();
+    k = (k + 1) % 1000;
+  }
+  state.SetItemsProcessed(state.iterations());
+  state.SetLabel(rendering.name);
+}
+BENCHMARK(BM_AddStar)->Apply(renderings_and_sides);
+
+/// The same from the fractions of every pixel, which photometry takes.
+void BM_IntegrateAndAdd(benchmark::State& state) {
+  const Rendering& rendering = kRenderings[state.range(0)];
+  const auto psf = psf_of(rendering);
+  Image<double, unit::ExpectedElectrons> image(kImageSide, kImageSide);
+  std::vector<double> fractions;
+  std::vector<double> scratch;
+  int k = 0;
+  for (auto _ : state) {
+    const StarLight light = light_of(k, state.range(1), rendering);
+    const Rectangle box = stamp_box(light.centre, light.half_width);
+    fractions.resize(box.size());
+    if (light.broadened)
+      psf->integrate_broadened(light.centre, light.motion, box, fractions, scratch);
+    else
+      psf->integrate(light.centre, box, fractions);
+    auto fraction = fractions.begin();
+    for (int y = box.y0; y < box.y1(); ++y)
+      for (int x = box.x0; x < box.x1(); ++x) image.at(x, y) += light.electrons * *fraction++;
+    benchmark::ClobberMemory();
+    k = (k + 1) % 1000;
+  }
+  state.SetItemsProcessed(state.iterations());
+  state.SetLabel(rendering.name);
+}
+BENCHMARK(BM_IntegrateAndAdd)->Apply(renderings_and_sides);
 
 void BM_OptimalMask(benchmark::State& state) {
   const Rectangle box = box_of(6);
