@@ -197,6 +197,20 @@ void poisson_kernel(const RandomStream& stream, const PixelPlaces& pixels, const
   }
 }
 
+/// Flags the pixels outside of a mask. @returns how many they are
+HWY_INLINE std::size_t flag_clipped(hn::Mask<Doubles> inside, std::uint8_t* flags) {
+  const Doubles d;
+  std::array<std::uint8_t, 8> bits{};
+  hn::StoreMaskBits(d, inside, bits.data());
+  std::size_t clipped = 0;
+  for (std::uint32_t outside = ~std::uint32_t{bits[0]} & ((1U << kDoubles) - 1U); outside != 0;
+       outside &= outside - 1U) {
+    flags[hwy::Num0BitsBelowLS1Bit_Nonzero32(outside)] |= pixel_flag::kAdcSaturated;
+    ++clipped;
+  }
+  return clipped;
+}
+
 std::size_t digitise_kernel(const double* counts, std::size_t size, double top, float* digital, std::uint8_t* flags) {
   const Doubles d;
   const Singles ds;
@@ -215,14 +229,18 @@ std::size_t digitise_kernel(const double* counts, std::size_t size, double top, 
   while (i + kSingles <= size) {
     const Double lower = hn::Add(hn::Round(hn::LoadU(d, counts + i)), zero);
     const Double upper = hn::Add(hn::Round(hn::LoadU(d, counts + i + kDoubles)), zero);
-    const auto inside =
-        hn::And(hn::And(hn::Lt(lower, limit), hn::Ge(lower, zero)), hn::And(hn::Lt(upper, limit), hn::Ge(upper, zero)));
-    if (HWY_LIKELY(hn::AllTrue(d, inside))) {
+    const auto lower_inside = hn::And(hn::Lt(lower, limit), hn::Ge(lower, zero));
+    const auto upper_inside = hn::And(hn::Lt(upper, limit), hn::Ge(upper, zero));
+    if (HWY_LIKELY(hn::AllTrue(d, hn::And(lower_inside, upper_inside)))) {
       hn::StoreU(demote(lower, upper), ds, digital + i);
-      i += kSingles;
-    } else {
+    } else if (hn::AllTrue(d, hn::And(hn::Eq(lower, lower), hn::Eq(upper, upper)))) {
+      hn::StoreU(demote(hn::Min(hn::Max(lower, zero), limit), hn::Min(hn::Max(upper, zero), limit)), ds, digital + i);
+      clipped += flag_clipped(lower_inside, flags + i) + flag_clipped(upper_inside, flags + i + kDoubles);
+    } else {  // something is not a number
       one_by_one(i + kSingles);
+      continue;
     }
+    i += kSingles;
   }
   one_by_one(size);
   return clipped;
