@@ -143,6 +143,7 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.exposure = exposure;
   state.attitude = {};
   state.attitude_steps = {};
+  state.still = nullptr;
   state.lost_electrons = 0.0;
   state.clipped_pixels = 0;
   std::ranges::fill(state.frame.flags.pixels(), std::uint8_t{0});
@@ -158,6 +159,7 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
 
 void Simulator::simulate(std::int64_t exposure, ExposureState& state, const StepObserver& observer) const {
   begin(exposure, state);
+  if (!still_.empty() && !observer) state.still = &still_;
   if (observer) {
     state.expected.make_whole();
     state.sampled.make_whole();
@@ -217,6 +219,7 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
       std::ranges::fill(state.expected.pixels(strip), 0.0);
       return;
     case Act::kRecall:
+      if (state.still != nullptr) return;  // read where it lies
       if (moving_ != nullptr) {
         state.moving.recall(strip, state.expected.pixels(strip));
       } else {
@@ -225,7 +228,7 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
       return;
     case Act::kTakeExpected:
       // Without shot noise a pixel holds what is expected of it.
-      std::ranges::copy(state.expected.pixels(strip), state.sampled.pixels(strip).begin());
+      std::ranges::copy(state.expectation(strip), state.sampled.pixels(strip).begin());
       return;
   }
 }

@@ -17,8 +17,7 @@ EffectNeed PhotonNoise::is_needed(const SceneSummary& scene) const {
 }
 
 void PhotonNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  pixel_poisson(context.stream, noise_of(strip, state.exposure), state.expected.pixels(strip),
-                state.sampled.pixels(strip));
+  pixel_poisson(context.stream, noise_of(strip, state.exposure), state.expectation(strip), state.sampled.pixels(strip));
 }
 
 }  // namespace astroid

@@ -94,6 +94,7 @@ struct ExposureState {
   AttitudeMoments attitude;                  ///< of the exposure; zero when nothing moves
   std::span<const Attitude> attitude_steps;  ///< of the exposure, where the plan wants them
   MovingImage::Exposure moving;              ///< its noiseless image, where that is recalled from fixed maps
+  const Plane<double, unit::ExpectedElectrons>* still = nullptr;  ///< its noiseless image, where that never changes
   StripPlane<double, unit::ExpectedElectrons> expected;
   StripPlane<double, unit::SampledElectrons> sampled;
   StripPlane<double, unit::Adu> analog;
@@ -102,6 +103,12 @@ struct ExposureState {
   std::int64_t clipped_pixels = 0;     ///< by the ADC
   std::vector<double> effect_seconds;  ///< wall time of each effect of the plan, over all exposures this state has seen
   std::vector<double> scratch;         ///< of the renderer; its content means nothing between calls
+
+  /// The expected electrons that draws are made from: of the image that never changes, which is read where it lies, or
+  /// of this exposure.
+  [[nodiscard]] std::span<const double> expectation(const Strip& strip) {
+    return still != nullptr ? still->pixels().subspan(strip.begin, strip.size()) : expected.pixels(strip);
+  }
 };
 
 /// What an effect may look at besides the exposure.
