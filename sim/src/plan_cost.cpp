@@ -22,7 +22,7 @@ constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},     
                                      {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
 constexpr double kRecall = 0.7;    ///< ns a pixel: it is read from where it is kept, if nothing moves
-constexpr double kRegion = 250.0;  ///< ns a region: what a window takes beyond its pixels
+constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
 /// Ns a pixel of one map, where the maps fit into a share of the last cache and where they come from memory.
 constexpr double kMapPixel = 0.15;
 constexpr double kFarMapPixel = 0.27;

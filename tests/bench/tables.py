@@ -44,7 +44,7 @@ def machine(run):
     caches = ", ".join(f'{cache["size"] // 1024} KiB L{cache["level"]}' for cache in context["caches"] if cache["type"] != "Instruction")
     dates = sorted(row["date"] for row in programs.values())
     return table(["", ""], [
-        ["date, commit", f'{dates[0][:16].replace("T", " ")} UTC, {", ".join(sorted({row["commit"] for row in programs.values()}))}'],
+        ["date, commit", f'{dates[0][:16].replace("T", " ")} to {dates[-1][11:16]} UTC, {", ".join(sorted({row["commit"] for row in programs.values()}))}'],
         ["processor", f'{context["cpu"]}, {context["num_cpus"]} virtual cores, {context["mhz_per_cpu"] / 1000:.1f} GHz; {caches}'],
         ["compiler", context["compiler"].removeprefix("GCC: ")],
         ["load average", f"{min(loads):.1f} to {max(loads):.1f} while it ran, of which the run itself is 1"]])
@@ -225,8 +225,12 @@ def plan(run):
     for side in (256, 4096):
         row = run.row("BM_GrowthPixels", side=side)
         add(f"{side}² px", row["predicted ms"], row["ms"])
-    row = run.row("BM_Windows", targets=1000, window=12)
-    add("1000 windows of 12 × 12 px", row["predicted ms"], row["ms"])
+    for side in (6, 12):
+        row = run.row("BM_Windows", targets=1000, window=side)
+        add(f"1000 windows of {side} × {side} px", row["predicted ms"], row["ms"])
+    for benchmark, key, value, name in (("BM_GrowthGaussian", "sigma", 300, "Gaussian PSF of σ 3 px"), ("BM_GrowthTable", "half-width", 5, "PSF of a table, 11 px")):
+        row = run.row(benchmark, **{key: value})
+        add(name, row["predicted ms"], row["ms"])
     if run.week:
         add("the week", 1000 * run.week["seconds_per_exposure"]["predicted"], 1000 * run.week["seconds_per_exposure"]["measured"])
     return table(["", "predicted, ms", "measured, ms", "off by"], rows)
