@@ -28,8 +28,8 @@ struct Strip {
 /// All pixels in one strip; its areas are the regions.
 Strip whole_strip(const PixelLayout& layout);
 
-/// Pixels of a strip of an exposure: its planes of doubles, 64 KiB each, stay in a second-level cache together.
-inline constexpr std::size_t kStripPixels = 8192;
+/// Pixels of a strip of an exposure: its planes of doubles, 128 KiB each, stay in a second-level cache together.
+inline constexpr std::size_t kStripPixels = 16384;
 
 /// Strips of about `pixels` pixels, at least one row each, in the order of the buffer.
 std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels);
