@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 
 namespace astroid {
@@ -27,6 +28,7 @@ EffectNeed jitter_need(const SceneSummary& scene) {
 
 void take_attitude(ExposureState& state, const AttitudeSeries& series) {
   const auto exposure = static_cast<std::size_t>(state.exposure);
+  ASTROID_CHECK_LT(exposure, series.moments.size());
   state.attitude = series.moments[exposure];
   if (series.samples.empty()) return;
   const auto steps = static_cast<std::size_t>(series.steps);
