@@ -286,6 +286,10 @@ HWY_INLINE Pairs<N> operator-(Pairs<N> x, Pairs<N> y) {
   return each([](Pair a, Pair b) { return Pair{hn::Sub(a.lower, b.lower), hn::Sub(a.upper, b.upper)}; }, x, y);
 }
 template <int N>
+HWY_INLINE Pairs<N> nearest(Pairs<N> x) {
+  return each([](Pair a) { return Pair{hn::Round(a.lower), hn::Round(a.upper)}; }, x);
+}
+template <int N>
 HWY_INLINE Pairs<N> whole_part(Pairs<N> x) {
   return each([](Pair a) { return Pair{hn::Floor(a.lower), hn::Floor(a.upper)}; }, x);
 }

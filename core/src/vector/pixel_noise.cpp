@@ -223,25 +223,19 @@ void poisson_kernel(const RandomStream& stream, const PixelPlaces& pixels, const
   }
 }
 
-/// Flags the pixels outside of a mask. @returns how many they are
-HWY_INLINE std::size_t flag_clipped(hn::Mask<Doubles> inside, std::uint8_t* flags) {
-  const Doubles d;
-  std::array<std::uint8_t, 8> bits{};
-  hn::StoreMaskBits(d, inside, bits.data());
-  std::size_t clipped = 0;
-  for (std::uint32_t outside = ~std::uint32_t{bits[0]} & ((1U << kDoubles) - 1U); outside != 0;
-       outside &= outside - 1U) {
-    flags[hwy::Num0BitsBelowLS1Bit_Nonzero32(outside)] |= pixel_flag::kAdcSaturated;
-    ++clipped;
-  }
-  return clipped;
+/// Flags the pixels of a mask. @returns how many they are
+HWY_INLINE std::size_t flag_clipped(hn::Mask<Singles> clipped, std::uint8_t* flags) {
+  const hn::Rebind<std::uint8_t, Singles> d;
+  const Integers di;
+  const auto flag = hn::IfThenElseZero(hn::RebindMask(di, clipped), hn::Set(di, pixel_flag::kAdcSaturated));
+  hn::StoreU(hn::Or(hn::LoadU(d, flags), hn::DemoteTo(d, flag)), d, flags);
+  return hn::CountTrue(Singles(), clipped);
 }
 
 std::size_t digitise_kernel(const double* counts, std::size_t size, double top, float* digital, std::uint8_t* flags) {
-  const Doubles d;
-  const Singles ds;
-  const auto limit = hn::Set(d, top);
+  const Singles d;
   const auto zero = hn::Zero(d);
+  const auto limit = hn::Set(d, static_cast<float>(top));  // exact
   std::size_t clipped = 0;
   std::size_t i = 0;
   const auto one_by_one = [&](std::size_t end) {
@@ -253,16 +247,14 @@ std::size_t digitise_kernel(const double* counts, std::size_t size, double top, 
     }
   };
   while (i + kSingles <= size) {
-    const auto lower = hn::Add(hn::Round(hn::LoadU(d, counts + i)), zero);
-    const auto upper = hn::Add(hn::Round(hn::LoadU(d, counts + i + kDoubles)), zero);
-    const auto lower_inside = hn::And(hn::Lt(lower, limit), hn::Ge(lower, zero));
-    const auto upper_inside = hn::And(hn::Lt(upper, limit), hn::Ge(upper, zero));
-    if (HWY_LIKELY(hn::AllTrue(d, hn::And(lower_inside, upper_inside)))) {
-      hn::StoreU(to_singles(Pair{lower, upper}), ds, digital + i);
-    } else if (hn::AllTrue(d, hn::And(hn::Eq(lower, lower), hn::Eq(upper, upper)))) {
-      hn::StoreU(to_singles(Pair{hn::Min(hn::Max(lower, zero), limit), hn::Min(hn::Max(upper, zero), limit)}), ds,
-                 digital + i);
-      clipped += flag_clipped(lower_inside, flags + i) + flag_clipped(upper_inside, flags + i + kDoubles);
+    // Whole numbers up to the top stay what they are in single precision, and larger ones stay larger.
+    const auto rounded = hn::Add(to_singles(nearest(load_doubles<1>(counts + i))).first, zero);
+    const auto inside = hn::And(hn::Ge(rounded, zero), hn::Lt(rounded, limit));
+    if (HWY_LIKELY(hn::AllTrue(d, inside))) {
+      hn::StoreU(rounded, d, digital + i);
+    } else if (hn::AllTrue(d, hn::Eq(rounded, rounded))) {
+      hn::StoreU(hn::Min(hn::Max(rounded, zero), limit), d, digital + i);
+      clipped += flag_clipped(hn::Not(inside), flags + i);
     } else {  // something is not a number
       one_by_one(i + kSingles);
       continue;
