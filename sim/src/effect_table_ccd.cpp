@@ -1,9 +1,11 @@
 #include <array>
 
 #include "astroid/sim/effect_table.hpp"
+#include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
 #include "effects/dark_current.hpp"
+#include "effects/drift.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
 #include "effects/jitter_file.hpp"
@@ -11,6 +13,7 @@
 #include "effects/photon_noise.hpp"
 #include "effects/prnu.hpp"
 #include "effects/readout_noise.hpp"
+#include "effects/repointing.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
 
@@ -31,7 +34,7 @@ struct Table {
   }
 };
 
-using CcdTable = Table<JitterModelEffect, JitterFileEffect,         // Pointing
+using CcdTable = Table<JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
                        Stars,                                       // Optics
                        Sky,                                         // Sky
                        Prnu, DarkCurrent,                           // PixelMean

@@ -16,9 +16,8 @@ namespace astroid {
 
 namespace {
 
-PixelPosition displaced(const RenderedStar& star, const Attitude& attitude) {
-  const PixelShift shift = displacement(star.motion, attitude);
-  return {star.position.x + shift.dx, star.position.y + shift.dy};
+PixelPosition displaced(PixelPosition position, PixelShift shift) {
+  return {position.x + shift.dx, position.y + shift.dy};
 }
 
 }  // namespace
@@ -62,15 +61,16 @@ void Stars::apply(ExposureState& state, const EffectContext& context, const Stri
       StarLight light{.centre = {}, .electrons = star.electrons * conditions.throughput, .half_width = star.half_width};
       light.motion = {.sxx = conditions.psf_variance, .sxy = 0.0, .syy = conditions.psf_variance};
       light.broadened = conditions.psf_variance > 0.0;
+      const PixelPosition place = displaced(star.position, star.aberration.displacement(conditions.velocity));
       if (jitter == JitterTreatment::kSubSteps) {
         light.electrons /= steps;
         for (const Attitude& attitude : state.attitude_steps) {
-          light.centre = displaced(star, attitude);
+          light.centre = displaced(place, displacement(star.motion, attitude));
           psf.add_star(light, view, state.scratch);
         }
         continue;
       }
-      light.centre = displaced(star, state.attitude.mean);
+      light.centre = displaced(place, displacement(star.motion, state.attitude.mean));
       if (jitter == JitterTreatment::kBroadened) {
         const MotionCovariance motion = motion_covariance(star.motion, state.attitude.covariance);
         light.motion = {light.motion.sxx + motion.sxx, motion.sxy, light.motion.syy + motion.syy};

@@ -12,6 +12,7 @@
 
 #include "astroid/core/frame.hpp"
 #include "astroid/core/random.hpp"
+#include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "astroid/sim/conditions.hpp"
 #include "astroid/sim/moving_image.hpp"
@@ -100,6 +101,7 @@ struct RenderedStar {
   double electrons = 0.0;   ///< per exposure
   double half_width = 0.0;  ///< of its stamp, px
   AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
+  AberrationJacobian aberration;  ///< px per velocity of the spacecraft
 };
 
 /// What happens to one camera that does not change from exposure to exposure; built once, then only read.

@@ -14,7 +14,9 @@
 #include "astroid/core/mission.hpp"
 #include "astroid/core/psf.hpp"
 #include "astroid/core/wcs.hpp"
+#include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
+#include "astroid/sim/attitude_trend.hpp"
 #include "astroid/sim/scene_summary.hpp"
 
 namespace astroid {
@@ -27,7 +29,13 @@ struct SceneStar {
   Magnitude magnitude;      ///< in the zero point's passband
   double electrons = 0.0;   ///< per exposure
   AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
+  AberrationJacobian aberration;  ///< px per velocity of the spacecraft; zero where the mission leaves it out
   bool is_target = false;   ///< brighter than the target limit and on the computed pixels
+};
+
+/// What moves the line of sight.
+struct AttitudeParts {
+  bool jitter = false, drift = false, repointing = false;
 };
 
 /// The immutable scene.
@@ -52,7 +60,12 @@ class Scene {
   [[nodiscard]] const PixelPsf& psf() const { return *psf_; }
   [[nodiscard]] const std::optional<SkyProjection>& projection() const { return projection_; }
   [[nodiscard]] const SceneSummary& summary() const { return summary_; }
+  /// With everything that moves the line of sight.
   [[nodiscard]] const AttitudeModel& attitude() const { return *attitude_; }
+  /// With some of it only.
+  [[nodiscard]] std::shared_ptr<const AttitudeModel> attitude(const AttitudeParts& parts) const;
+  /// How far drift and re-pointing lead, and how fast.
+  [[nodiscard]] const AttitudeTrend& attitude_trend() const { return trend_; }
   [[nodiscard]] Seconds mid_time(std::int64_t exposure) const;
   /// What was assumed or left out while the scene was built, for the report.
   [[nodiscard]] std::span<const std::string> notes() const { return notes_; }
@@ -64,6 +77,8 @@ class Scene {
   std::vector<std::size_t> targets_;
   std::shared_ptr<const PixelLayout> layout_;
   std::shared_ptr<const PixelPsf> psf_;
+  std::shared_ptr<const AttitudeModel> jitter_;
+  AttitudeTrend drift_, repointing_, trend_;
   std::shared_ptr<const AttitudeModel> attitude_;
   SceneSummary summary_;
   std::vector<std::string> notes_;

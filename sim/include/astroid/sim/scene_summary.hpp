@@ -36,12 +36,18 @@ struct SceneSummary {
   int cameras = 1;
   double attitude_rms_px = 0.0;              ///< largest displacement rms of one axis anywhere on the frame
   double attitude_rms_in_exposure_px = 0.0;  ///< rms of the motion about its mean within one exposure
+  double drift_px = 0.0;                     ///< largest displacement of any star by drift over the run
+  double repointing_px = 0.0;                ///< and by the errors of re-pointing
+  double aberration_px = 0.0;                ///< and by aberration
+  double aberration_px_per_second = 0.0;     ///< the fastest that aberration moves any star
   PsfSensitivity psf;
   double accuracy = 1e-6;  ///< the accuracy asked for, relative
 
   /// What all approximations together may add to a target's flux, e- per exposure:
   /// max(accuracy F, 0.01 sigma_F over the reported duration with all cameras) (docs/accuracy.md).
   [[nodiscard]] double flux_tolerance(double target_electrons) const;
+  /// How much a displacement of so many pixels may change a flux, relative; at most 1.
+  [[nodiscard]] double flux_change(double displacement) const;
   /// The smallest flux tolerance of any target.
   [[nodiscard]] double tightest_tolerance() const;
   /// Variance of a target's flux averaged over the reported duration and all cameras, relative to its flux squared,
