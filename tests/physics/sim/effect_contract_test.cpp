@@ -59,6 +59,28 @@ std::vector<test::EffectScene> scenes() {
             m.satellite.jitter.file = attitude_file();
           },
           [](Mission& m) { m.satellite.jitter.model = JitterModel::kNone; }),
+      scene(
+          "drift",
+          [](Mission& m) {
+            m.satellite.drift.yaw_rate = Arcseconds(3000.0);
+            m.satellite.drift.roll = Arcseconds(3000.0);
+          },
+          [](Mission& m) { m.satellite.drift = {}; }),
+      scene(
+          "re-pointing",
+          [](Mission& m) {
+            m.satellite.quarter_days = 20.0 / 86400.0;
+            m.satellite.repointing.yaw = m.satellite.repointing.roll = Arcseconds(2.0);
+          },
+          [](Mission& m) { m.satellite.repointing = {}; }),
+      scene(
+          "aberration",
+          [](Mission& m) {
+            m.simulation.cycle = Seconds(40.0 * 86400.0);
+            m.ccd.axis_x = 1500.0;
+            m.satellite.aberration = true;
+          },
+          [](Mission& m) { m.satellite.aberration = false; }),
       scene("stars", {}, {}),
       scene("sky", {}, [](Mission& m) { m.field.sky_background = ElectronsPerSecond(0.0); }),
       scene(
