@@ -1,5 +1,6 @@
 #include "astroid/sim/aberration.hpp"
 
+#include "astroid/core/ecliptic.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/sphere.hpp"
 
@@ -7,18 +8,8 @@ namespace astroid {
 
 namespace {
 
-constexpr double kRadian = kPi / 180.0;  // of a degree
 constexpr double kArcsecPerRadian = 180.0 * 3600.0 / kPi;
 
-// Mean elements of the orbit of the Earth-Moon barycentre, J2000 ecliptic, valid 1800 - 2050. @source Standish1992
-constexpr double kEccentricity = 0.01671123;
-constexpr double kMeanLongitude = 100.46457166;        // deg at J2000
-constexpr double kMeanLongitudeRate = 35999.37244981;  // deg per century
-constexpr double kPerihelion = 102.93768193;           // deg
-constexpr double kPerihelionRate = 0.32327364;         // deg per century
-constexpr double kObliquity = 23.43928;                // deg, J2000
-constexpr double kJ2000 = 51544.5;                     // MJD
-constexpr double kDaysPerCentury = 36525.0;
 /// Mean speed of the Earth over the speed of light, 20.49552 arcsec: n a / (c sqrt(1 - e²)).
 constexpr double kAberrationConstant = 20.49552 / kArcsecPerRadian;
 /// Distance of L2 from the Sun over the Earth's: 1 + (m/3)^(1/3), m = 3.0404e-6 of Earth and Moon.
@@ -48,17 +39,14 @@ DetectorAxes detector_axes(const CameraPointing& pointing) {
 }  // namespace
 
 Velocity spacecraft_velocity(double mjd) {
-  const double centuries = (mjd - kJ2000) / kDaysPerCentury;
-  const double perihelion = kRadian * (kPerihelion + kPerihelionRate * centuries);
-  const double anomaly = kRadian * (kMeanLongitude + kMeanLongitudeRate * centuries) - perihelion;
-  // Equation of the centre to e²; the next term is 1e-5 rad.
-  const double longitude = perihelion + anomaly + 2.0 * kEccentricity * det::sin(anomaly) +
-                           1.25 * kEccentricity * kEccentricity * det::sin(2.0 * anomaly);
+  const EarthPlace earth = earth_place(mjd);
   const double speed = kLagrange2 * kAberrationConstant;
-  const double vx = -speed * (det::sin(longitude) + kEccentricity * det::sin(perihelion));
-  const double vy = speed * (det::cos(longitude) + kEccentricity * det::cos(perihelion));
-  const double obliquity = kRadian * kObliquity;
-  return {vx, vy * det::cos(obliquity), vy * det::sin(obliquity)};
+  const double longitude = earth.longitude.value();
+  const double perihelion = earth.perihelion.value();
+  const double vx = -speed * (det::sin(longitude) + earth.eccentricity * det::sin(perihelion));
+  const double vy = speed * (det::cos(longitude) + earth.eccentricity * det::cos(perihelion));
+  const SineCosine obliquity = sine_cosine(kObliquity);
+  return {vx, vy * obliquity.cosine, vy * obliquity.sine};
 }
 
 AberrationJacobian aberration_jacobian(SkyPosition star, SkyPosition boresight, const CameraPointing& pointing,

@@ -16,6 +16,8 @@
 #include "effects/repointing.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
+#include "effects/stray_light.hpp"
+#include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
 
@@ -36,7 +38,7 @@ struct Table {
 
 using CcdTable = Table<JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
                        Stars,                                       // Optics
-                       Sky,                                         // Sky
+                       Sky, ZodiacalSky, StrayLight,                // Sky
                        Prnu, DarkCurrent,                           // PixelMean
                        PhotonNoise, FullWell,                       // PixelSample
                        ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout

@@ -8,6 +8,7 @@
 #include <map>
 #include <utility>
 
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
@@ -159,6 +160,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
                                 .projection = ccd.projection};
   projection_.emplace(pointing);
 
+  if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
+
   const double exposure = mission_.simulation.exposure_time.value();
   const AttitudeVariance jitter = attitude_->variance();
   std::size_t not_projectable = 0;
@@ -236,7 +239,9 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.accuracy = 1e-6 * mission_.simulation.accuracy.value();
   s.cameras = mission_.telescope.cameras;
   s.exposures_per_bin = std::max(1.0, std::floor(mission_.analysis.bin / mission_.simulation.cycle));
-  s.background = (mission_.field.sky_background + ccd.dark_current).value() * exposure;
+  const ElectronsPerSecond from_sky = mean_background_rate(mission_);
+  s.sky = (from_sky - mission_.field.stray_light.level).value() * exposure;
+  s.background = (from_sky + ccd.dark_current).value() * exposure;
   const double readout = ccd.readout_noise.value();
   const double quantisation = ccd.gain.value() / kSqrt12;
   s.pixel_noise_variance = s.background + readout * readout + quantisation * quantisation;
@@ -282,6 +287,29 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+}
+
+void Scene::find_sky() {
+  rate_of_s10_ = rate_of_one_s10(mission_);
+  const Rectangle d = detector();
+  const PixelPosition places[] = {{d.x0 - 0.5, d.y0 - 0.5},
+                                  {d.x1() - 0.5, d.y0 - 0.5},
+                                  {d.x0 - 0.5, d.y1() - 0.5},
+                                  {d.x1() - 0.5, d.y1() - 0.5}};
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    corners_[i] = projection_->to_sky(places[i]);
+    if (!std::isfinite(corners_[i].ra)) corners_[i] = projection_->axis();  // beyond the projection
+  }
+  // The whole run must be far enough from the Sun, which moves by 5 deg in this time and comes again after a year.
+  constexpr double kStep = 5.0 * 86400.0;
+  constexpr double kYear = 366.0 * 86400.0;
+  const double end = std::min(2.0 * middle_of_run(mission_.simulation).value(), kYear);
+  for (double time = 0.0; time < end + kStep; time += kStep)
+    for (std::size_t i = 0; i < corners_.size(); ++i) (void)sky_at_corner(i, Seconds(std::min(time, end)));
+}
+
+ElectronsPerSecond Scene::sky_at_corner(std::size_t corner, Seconds time) const {
+  return sky_rate(mission_, rate_of_s10_, corners_[corner], time);
 }
 
 std::shared_ptr<const AttitudeModel> Scene::attitude(const AttitudeParts& parts) const {

@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <functional>
+#include <string>
 #include <vector>
 
 #include "astroid/core/distributions.hpp"
@@ -45,20 +47,24 @@ double mask_sum(const ExposureState& state) {
   return sum;
 }
 
-/// Light of every star in the mask, by the error function, where the attitude is that of the middle of an exposure.
-double exact_sum(const Scene& scene, double seconds) {
-  const double days = seconds / 86400.0;
-  const DriftSettings& drift = scene.mission().satellite.drift;
-  const Attitude attitude{drift.yaw_rate.value() * days, drift.pitch_rate.value() * days, 0.0};
+/// Light in the mask of a star at a place, by the error function.
+double exact_light(double electrons, PixelPosition p) {
   const auto part = [](double low, double high, double centre) {
     const double scale = 1.0 / (std::sqrt(2.0) * kSigma);
     return 0.5 * (std::erf((high - centre) * scale) - std::erf((low - centre) * scale));
   };
+  return electrons * part(kMask.x0 - 0.5, kMask.x1() - 0.5, p.x) * part(kMask.y0 - 0.5, kMask.y1() - 0.5, p.y);
+}
+
+/// Light of every star in the mask, where the attitude is that of the middle of an exposure.
+double exact_sum(const Scene& scene, double seconds) {
+  const double days = seconds / 86400.0;
+  const DriftSettings& drift = scene.mission().satellite.drift;
+  const Attitude attitude{drift.yaw_rate.value() * days, drift.pitch_rate.value() * days, 0.0};
   double sum = 0.0;
   for (const SceneStar& star : scene.stars()) {
     const PixelShift shift = displacement(star.motion, attitude);
-    sum += star.electrons * part(kMask.x0 - 0.5, kMask.x1() - 0.5, star.position.x + shift.dx) *
-           part(kMask.y0 - 0.5, kMask.y1() - 0.5, star.position.y + shift.dy);
+    sum += exact_light(star.electrons, {star.position.x + shift.dx, star.position.y + shift.dy});
   }
   return sum;
 }
@@ -161,6 +167,96 @@ TEST(Drift, WithoutStrengthIsNoDriftAtAll) {
   EXPECT_FALSE(plan.runs("re-pointing"));
   EXPECT_FALSE(plan.runs("aberration"));
   EXPECT_TRUE(plan.still);
+}
+
+/// Just below the threshold of an effect of pointing, the plan of just above moves no flux by more than its tolerance.
+void expect_harmless_below_threshold(const std::string& effect, const std::function<void(Mission&, double)>& set,
+                                     double high) {
+  const auto mission_of = [&](double strength) {
+    Mission mission = test::bare_mission(kSide, kSide);
+    mission.simulation.exposures = 200;
+    mission.ccd.axis_x = 1000.0;
+    set(mission, strength);
+    return mission;
+  };
+  double low = 0.0;
+  while (high - low > 0.01 * high) {
+    const double middle = 0.5 * (low + high);
+    const Scene scene(mission_of(middle), field(0));
+    (make_plan(scene).runs(effect) ? high : low) = middle;
+  }
+  ASSERT_GT(low, 0.0);
+  const auto off = std::make_shared<const Scene>(mission_of(low), field(0));
+  const auto on = std::make_shared<const Scene>(mission_of(1.02 * high), field(0));
+  const Simulator still(off, std::make_shared<const Plan>(make_plan(*off)), 0);
+  const Simulator moved(on, std::make_shared<const Plan>(make_plan(*on)), 0);
+  ASSERT_FALSE(still.plan().runs(effect));
+  ASSERT_TRUE(moved.plan().runs(effect));
+  ExposureState a = still.make_state();
+  ExposureState b = moved.make_state();
+  double worst = 0.0;
+  for (std::int64_t k = 0; k < 200; k += 7) {
+    still.expect(k, a);
+    moved.expect(k, b);
+    const double tolerance = off->summary().flux_tolerance(off->stars()[0].electrons);
+    worst = std::max(worst, std::abs(mask_sum(a) - mask_sum(b)) / tolerance);
+  }
+  std::printf("%s at %.3g: moves a flux by at most %.2g of its tolerance\n", effect.c_str(), low, worst);
+  EXPECT_LE(worst, 1.05);  // the motion is up to 3 % more than that of the threshold
+  EXPECT_GT(worst, 0.0);
+}
+
+TEST(SkippedPointing, BelowItsThresholdIsHarmless) {
+  expect_harmless_below_threshold(
+      "drift", [](Mission& m, double v) { m.satellite.drift.yaw_rate = Arcseconds(v); }, 100.0);
+  expect_harmless_below_threshold(
+      "re-pointing",
+      [](Mission& m, double v) {
+        m.satellite.quarter_days = 1000.0 / 86400.0;
+        m.satellite.repointing.yaw = Arcseconds(v);
+      },
+      10.0);
+  expect_harmless_below_threshold(
+      "aberration",
+      [](Mission& m, double v) {
+        m.ccd.axis_x = 11.4 + 1000.0 * v;  // the farther from the boresight, the more a star moves
+        m.ccd.axis_y = 11.7;
+        m.satellite.aberration = true;
+      },
+      1.0);
+}
+
+TEST(Aberration, MovesTheImageAsItsJacobianSays) {
+  Mission mission = drifting_mission();
+  mission.satellite.drift = {};
+  mission.satellite.aberration = true;
+  mission.ccd.axis_x = 2000.0;
+  const auto scene = std::make_shared<const Scene>(mission, field(0));
+  const auto plan = std::make_shared<const Plan>(make_plan(*scene));
+  ASSERT_TRUE(plan->runs("aberration"));
+  const Simulator simulator(scene, plan, 0);
+  ExposureState state = simulator.make_state();
+  const SceneStar& star = scene->stars()[0];
+  const double start = mission.simulation.start_mjd;
+  double worst = 0.0;
+  double farthest = 0.0;
+  double changed = 0.0;
+  const double unmoved = exact_light(star.electrons, star.position);
+  for (std::int64_t k = 0; k < mission.simulation.exposures; k += 101) {
+    simulator.expect(k, state);
+    const Velocity a = spacecraft_velocity(start);
+    const Velocity b = spacecraft_velocity(start + (static_cast<double>(k) * 600.0 + 10.5) / 86400.0);
+    const PixelShift shift = star.aberration.displacement({b[0] - a[0], b[1] - a[1], b[2] - a[2]});
+    const double exact = exact_light(star.electrons, {star.position.x + shift.dx, star.position.y + shift.dy});
+    farthest = std::max(farthest, std::hypot(shift.dx, shift.dy));
+    changed = std::max(changed, std::abs(exact / unmoved - 1.0));
+    worst = std::max(worst, std::abs(mask_sum(state) - exact) / scene->summary().flux_tolerance(star.electrons));
+  }
+  std::printf("aberration moves the star by up to %.4f px and its flux by %.3g ppm, to %.2g of the tolerance\n", farthest,
+              1e6 * changed, worst);
+  EXPECT_GT(farthest, 0.02);
+  EXPECT_GT(changed, 1e-4);
+  EXPECT_LT(worst, 0.3);  // its share of the tolerance, by epochs
 }
 
 }  // namespace

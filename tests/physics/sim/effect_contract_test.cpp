@@ -84,6 +84,16 @@ std::vector<test::EffectScene> scenes() {
       scene("stars", {}, {}),
       scene("sky", {}, [](Mission& m) { m.field.sky_background = ElectronsPerSecond(0.0); }),
       scene(
+          "zodiacal-sky", [](Mission& m) { m.field.sky = SkyModel::kZodiacal; }, {}),
+      scene(
+          "stray-light",
+          [](Mission& m) {
+            m.field.stray_light.level = ElectronsPerSecond(30.0);
+            m.field.stray_light.gradient_x = 0.3;
+            m.field.stray_light.gradient_y = -0.2;
+          },
+          [](Mission& m) { m.field.stray_light = {}; }),
+      scene(
           "prnu", [](Mission& m) { m.ccd.prnu = 0.02; }, [](Mission& m) { m.ccd.prnu = 0.0; }),
       scene(
           "dark-current",

@@ -1,6 +1,7 @@
 // The scene: what is there to be seen, and the instrument that looks. Immutable.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -66,11 +67,16 @@ class Scene {
   [[nodiscard]] std::shared_ptr<const AttitudeModel> attitude(const AttitudeParts& parts) const;
   /// How far drift and re-pointing lead, and how fast.
   [[nodiscard]] const AttitudeTrend& attitude_trend() const { return trend_; }
+  /// The zodiacal sky at a corner of the detector: lower left, lower right, upper left, upper right.
+  /// @param time  since the start of the run
+  [[nodiscard]] ElectronsPerSecond sky_at_corner(std::size_t corner, Seconds time) const;
   [[nodiscard]] Seconds mid_time(std::int64_t exposure) const;
   /// What was assumed or left out while the scene was built, for the report.
   [[nodiscard]] std::span<const std::string> notes() const { return notes_; }
 
  private:
+  void find_sky();
+
   Mission mission_;
   std::optional<SkyProjection> projection_;
   std::vector<SceneStar> stars_;
@@ -80,6 +86,8 @@ class Scene {
   std::shared_ptr<const AttitudeModel> jitter_;
   AttitudeTrend drift_, repointing_, trend_;
   std::shared_ptr<const AttitudeModel> attitude_;
+  ElectronsPerSecond rate_of_s10_{0.0};   // of a pixel; where the sky is zodiacal
+  std::array<SkyPosition, 4> corners_{};  // of the detector, likewise
   SceneSummary summary_;
   std::vector<std::string> notes_;
 };

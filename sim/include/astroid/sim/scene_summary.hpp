@@ -29,7 +29,8 @@ struct SceneSummary {
   double peak_pixel_bound = 0.0;  ///< e-, upper bound of any pixel's expectation
   double faintest_target_electrons = 0.0;
   double brightest_target_electrons = 0.0;  ///< of those that do not saturate
-  double background = 0.0;                  ///< expected sky + dark, e- per pixel and exposure
+  double sky = 0.0;                         ///< on the axis in the middle of the run, e- per pixel and exposure
+  double background = 0.0;                  ///< expected sky + stray light + dark, e- per pixel and exposure
   double pixel_noise_variance = 0.0;        ///< background + readout² + quantisation², e-²
   double aperture_pixels = 0.0;             ///< area that bounds any target's aperture
   double exposures_per_bin = 1.0;           ///< in the longest time bin reported

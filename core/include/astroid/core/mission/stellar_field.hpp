@@ -31,7 +31,7 @@ struct StellarFieldSettings {
   std::string variables;               ///< absolute path; optional file of variable stars
   SkyModel sky = SkyModel::kConstant;
   ElectronsPerSecond sky_background{0.0};  ///< per pixel, detected; of the constant model
-  double unresolved_stars = 0.0;           ///< S10, light of stars that are not in the catalogue (zodiacal model)
+  double unresolved_stars = -1.0;  ///< S10 of stars that are not in the catalogue (zodiacal model); < 0: by latitude
   StrayLightSettings stray_light;
 
   friend bool operator==(const StellarFieldSettings&, const StellarFieldSettings&) = default;
