@@ -12,11 +12,13 @@
 #include "effects/jitter_model.hpp"
 #include "effects/photon_noise.hpp"
 #include "effects/prnu.hpp"
+#include "effects/proper_motion_effect.hpp"
 #include "effects/readout_noise.hpp"
 #include "effects/repointing.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
 #include "effects/stray_light.hpp"
+#include "effects/variable_stars.hpp"
 #include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
@@ -36,8 +38,9 @@ struct Table {
   }
 };
 
-using CcdTable = Table<JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                       Stars,                                       // Optics
+using CcdTable = Table<ProperMotionEffect,  // Catalogue
+                       JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
+                       Stars, VariableStars,                        // Optics
                        Sky, ZodiacalSky, StrayLight,                // Sky
                        Prnu, DarkCurrent,                           // PixelMean
                        PhotonNoise, FullWell,                       // PixelSample

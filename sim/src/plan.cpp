@@ -158,6 +158,7 @@ Plan make_plan(const Scene& scene) {
   plan.tolerance = summary.tightest_tolerance();
   plan.renderer = scene.mission().psf.model == PsfModel::kGaussian ? "analytic" : "prf";
   plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
+  plan.knobs.variables = plan.runs("variable-stars");
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   if (moves) plan_jitter(scene, kShares.jitter, plan);
   if (moves && steady) plan_polynomial(scene, kShares.jitter, plan);

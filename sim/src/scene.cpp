@@ -6,13 +6,17 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
+#include "astroid/catalogues/proper_motion.hpp"
 #include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/sphere.hpp"
 #include "effects/drift.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/repointing.hpp"
@@ -161,6 +165,9 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   projection_.emplace(pointing);
 
   if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
+  constexpr double kSecondsPerDay = 86400.0;
+  summary_.epoch = julian_year(mission_.simulation.start_mjd +
+                               middle_of_run(mission_.simulation).value() / kSecondsPerDay);
 
   const double exposure = mission_.simulation.exposure_time.value();
   const AttitudeVariance jitter = attitude_->variance();
@@ -172,12 +179,21 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     SceneStar s;
     s.id = star.id;
     if (catalogue.positions == PositionKind::kSky) {
-      const std::optional<PixelPosition> position = projection_->to_pixel(star.sky);
+      const bool moves = mission_.field.proper_motion && (star.pm_ra != 0.0 || star.pm_dec != 0.0);
+      const double epoch = star.epoch > 0.0 ? star.epoch : mission_.field.catalogue_epoch;
+      s.sky = moves ? moved(star.sky, {star.pm_ra, star.pm_dec}, summary_.epoch - epoch) : star.sky;
+      if (moves) {
+        ++summary_.moved_stars;
+        constexpr double kArcsecPerDegree = 3600.0;
+        summary_.proper_motion_px =
+            std::max(summary_.proper_motion_px, angular_separation(s.sky, star.sky).value() * kArcsecPerDegree /
+                                                    ccd.pixel_scale.value());
+      }
+      const std::optional<PixelPosition> position = projection_->to_pixel(s.sky);
       if (!position) {
         ++not_projectable;
         continue;
       }
-      s.sky = star.sky;
       s.position = *position;
     } else {
       s.sky = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
@@ -205,6 +221,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     if (satellite.aberration) s.aberration = aberration_jacobian(direction, pointing.axis, pointing, s.motion);
     stars_.push_back(std::move(s));
   }
+  read_variable_stars(catalogue);
   if (not_projectable > 0)
     notes_.push_back(fmt::format("{} stars lie behind the horizon of the projection", not_projectable));
   if (outside > 0) notes_.push_back(fmt::format("{} stars of the catalogue fall outside the detector", outside));
@@ -287,6 +304,37 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+}
+
+void Scene::read_variable_stars(const StarCatalogue& catalogue) {
+  if (mission_.field.variables.empty()) return;
+  variables_ = read_variables(mission_.field.variables, 2.0 * middle_of_run(mission_.simulation).value());
+  std::unordered_map<std::string, int> number;
+  for (std::size_t i = 0; i < variables_.size(); ++i) number[variables_[i].id] = static_cast<int>(i);
+  std::unordered_set<std::string> known;
+  for (const CatalogueStar& star : catalogue.stars)
+    if (number.contains(star.id)) known.insert(star.id);
+  std::vector<Problem> problems;
+  for (const VariableStar& variable : variables_)
+    if (!known.contains(variable.id))
+      problems.push_back({.file = mission_.field.variables,
+                          .line = variable.line,
+                          .parameter = "column id",
+                          .value = variable.id,
+                          .expected = fmt::format("an id of {}", catalogue.source),
+                          .message = "is not a star of the catalogue"});
+  if (!problems.empty()) throw InputError(std::move(problems));
+  for (SceneStar& star : stars_) {
+    const auto found = number.find(star.id);
+    if (found == number.end()) continue;
+    star.variability = found->second;
+    ++summary_.variable_stars;
+    const double change = variables_[static_cast<std::size_t>(found->second)].variability.largest_change();
+    summary_.largest_variation = std::max(summary_.largest_variation, change * star.electrons);
+  }
+  if (summary_.variable_stars < variables_.size())
+    notes_.push_back(fmt::format("{} variable stars are not on the detector",
+                                 variables_.size() - summary_.variable_stars));
 }
 
 void Scene::find_sky() {

@@ -32,7 +32,8 @@ double excursion(const SceneStar& star, const Attitude& farthest) {
 }  // namespace
 
 std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const PlanKnobs& knobs,
-                                                  std::span<const Rectangle> areas, const Attitude& farthest) {
+                                                  std::span<const Rectangle> areas, const Attitude& farthest,
+                                                  StarChoice choice) {
   constexpr double kRounding = 1.0;  // px: of the stamp's edges
   std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
   std::vector<double> reach(scene.stars().size());
@@ -40,6 +41,8 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
   for (std::size_t i = 0; i < reach.size(); ++i) {
     const SceneStar& star = scene.stars()[i];
     if (!(star.electrons > 0.0)) continue;
+    const bool constant = star.variability < 0;
+    if (choice != StarChoice::kAll && constant != (choice == StarChoice::kConstant)) continue;
     reach[i] = knobs.stamp_half_width(star.electrons) + excursion(star, farthest) + kRounding;
     widest = std::max(widest, reach[i]);
     cells[{cell(star.position.x), cell(star.position.y)}].push_back(static_cast<std::uint32_t>(i));
@@ -61,7 +64,8 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     list.reserve(found.size());
     for (const std::uint32_t i : found) {
       const SceneStar& star = scene.stars()[i];
-      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion, star.aberration});
+      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion, star.aberration,
+                      star.variability});
     }
   }
   return lists;

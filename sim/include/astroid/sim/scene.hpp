@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "astroid/catalogues/star_catalogue.hpp"
+#include "astroid/catalogues/variability.hpp"
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/image.hpp"
 #include "astroid/core/mission.hpp"
@@ -31,6 +32,7 @@ struct SceneStar {
   double electrons = 0.0;   ///< per exposure
   AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
   AberrationJacobian aberration;  ///< px per velocity of the spacecraft; zero where the mission leaves it out
+  int variability = -1;     ///< index into Scene::variables(); -1: constant
   bool is_target = false;   ///< brighter than the target limit and on the computed pixels
 };
 
@@ -61,6 +63,8 @@ class Scene {
   [[nodiscard]] const PixelPsf& psf() const { return *psf_; }
   [[nodiscard]] const std::optional<SkyProjection>& projection() const { return projection_; }
   [[nodiscard]] const SceneSummary& summary() const { return summary_; }
+  /// How stars vary.
+  [[nodiscard]] std::span<const VariableStar> variables() const { return variables_; }
   /// With everything that moves the line of sight.
   [[nodiscard]] const AttitudeModel& attitude() const { return *attitude_; }
   /// With some of it only.
@@ -76,11 +80,13 @@ class Scene {
 
  private:
   void find_sky();
+  void read_variable_stars(const StarCatalogue& catalogue);
 
   Mission mission_;
   std::optional<SkyProjection> projection_;
   std::vector<SceneStar> stars_;
   std::vector<std::size_t> targets_;
+  std::vector<VariableStar> variables_;
   std::shared_ptr<const PixelLayout> layout_;
   std::shared_ptr<const PixelPsf> psf_;
   std::shared_ptr<const AttitudeModel> jitter_;

@@ -37,6 +37,11 @@ struct SceneSummary {
   int cameras = 1;
   double attitude_rms_px = 0.0;              ///< largest displacement rms of one axis anywhere on the frame
   double attitude_rms_in_exposure_px = 0.0;  ///< rms of the motion about its mean within one exposure
+  std::size_t variable_stars = 0;            ///< on the detector
+  double largest_variation = 0.0;            ///< e- per exposure, of any of them
+  std::size_t moved_stars = 0;               ///< that have a proper motion
+  double proper_motion_px = 0.0;             ///< the farthest that one was moved to the epoch of the run
+  double epoch = 2000.0;                     ///< of the middle of the run, Julian year
   double drift_px = 0.0;                     ///< largest displacement of any star by drift over the run
   double repointing_px = 0.0;                ///< and by the errors of re-pointing
   double aberration_px = 0.0;                ///< and by aberration
