@@ -1,18 +1,25 @@
 #include <array>
 
 #include "astroid/sim/effect_table.hpp"
+#include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
 #include "effects/dark_current.hpp"
+#include "effects/drift.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/photon_noise.hpp"
 #include "effects/prnu.hpp"
+#include "effects/proper_motion_effect.hpp"
 #include "effects/readout_noise.hpp"
+#include "effects/repointing.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
+#include "effects/stray_light.hpp"
+#include "effects/variable_stars.hpp"
+#include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
 
@@ -31,9 +38,10 @@ struct Table {
   }
 };
 
-using CcdTable = Table<JitterModelEffect, JitterFileEffect,         // Pointing
-                       Stars,                                       // Optics
-                       Sky,                                         // Sky
+using CcdTable = Table<ProperMotionEffect,  // Catalogue
+                       JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
+                       Stars, VariableStars,                        // Optics
+                       Sky, ZodiacalSky, StrayLight,                // Sky
                        Prnu, DarkCurrent,                           // PixelMean
                        PhotonNoise, FullWell,                       // PixelSample
                        ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout

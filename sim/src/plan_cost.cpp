@@ -17,7 +17,7 @@ struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
-constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},      {"dark-current", 0.4},
+constexpr PixelCost kPixelCosts[] = {{"sky", 0.1}, {"zodiacal-sky", 0.6}, {"stray-light", 0.6},           {"prnu", 0.4},      {"dark-current", 0.4},
                                      {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
                                      {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
