@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kNone = 0.0;  // too near to the Sun for the table
 constexpr std::array<double, 11> kLatitudes{0, 5, 10, 15, 20, 25, 30, 45, 60, 75, 90};
-constexpr std::array<double, 19> kLongitudes{0,  5,  10, 15, 20,  25,  30,  35,  40, 45,
+constexpr std::array<double, 19> kLongitudes{0,  5,  10, 15,  20,  25,  30,  35,  40, 45,
                                              60, 75, 90, 105, 120, 135, 150, 165, 180};
 constexpr double kUnitsPerS10 = 1.28;
 /// 1e-8 W m^-2 sr^-1 um^-1 at 500 nm: rows by longitude from the Sun, columns by latitude. @source Leinert1998 Table 17
@@ -94,8 +94,8 @@ S10 zodiacal_light(SkyPosition direction, double mjd) {
 S10 unresolved_starlight(SkyPosition direction) {
   const SphericalPosition galactic = to_galactic(direction);
   const double l = std::min(galactic.longitude.value(), 360.0 - galactic.longitude.value());
-  const double brightness_i = 18.97338 + 8.833 * std::fabs(galactic.latitude.value()) / 40.0 +
-                              4.007 * det::pow(l / 180.0, 0.805);
+  const double brightness_i =
+      18.97338 + 8.833 * std::fabs(galactic.latitude.value()) / 40.0 + 4.007 * det::pow(l / 180.0, 0.805);
   constexpr double kSolarColour = 0.70;  // V - I
   constexpr double kUnit = 10.0;         // V of the stars that S10 counts
   const double relative = flux_ratio(DeltaMag(brightness_i + kSolarColour - kUnit));
@@ -121,8 +121,7 @@ ElectronsPerSecond sky_rate(const Mission& mission, ElectronsPerSecond rate, Sky
   const StellarFieldSettings& field = mission.field;
   if (field.sky == SkyModel::kConstant) return field.sky_background;
   const double mjd = mission.simulation.start_mjd + time.value() / kSecondsPerDay;
-  const double stars =
-      field.unresolved_stars >= 0.0 ? field.unresolved_stars : unresolved_starlight(direction).value;
+  const double stars = field.unresolved_stars >= 0.0 ? field.unresolved_stars : unresolved_starlight(direction).value;
   return (zodiacal_light(direction, mjd).value + stars) * rate;
 }
 

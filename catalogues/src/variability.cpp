@@ -36,8 +36,7 @@ double trapezoid(const PeriodicDips& d, double t) {
   const double rising = std::min(inside, d.ingress);
   const double falling = std::max(0.0, inside - (d.duration - d.ingress));
   double area = inside - rising - falling;
-  if (d.ingress > 0.0)
-    area += 0.5 * rising * rising / d.ingress + falling * (1.0 - 0.5 * falling / d.ingress);
+  if (d.ingress > 0.0) area += 0.5 * rising * rising / d.ingress + falling * (1.0 - 0.5 * falling / d.ingress);
   return area;
 }
 
@@ -88,10 +87,10 @@ Extent extent_of(const VariationComponent& component) {
 double Variability::mean(double begin, double end) const {
   double flux = 1.0;
   for (const VariationComponent& component : components_)
-    flux += std::visit(
-        Overloaded{[&](const std::shared_ptr<const SampledVariation>& s) { return mean_of(*s, begin, end); },
-                   [&](const auto& c) { return mean_of(c, begin, end); }},
-        component);
+    flux +=
+        std::visit(Overloaded{[&](const std::shared_ptr<const SampledVariation>& s) { return mean_of(*s, begin, end); },
+                              [&](const auto& c) { return mean_of(c, begin, end); }},
+                   component);
   return std::max(0.0, flux);  // rounding
 }
 
@@ -118,18 +117,19 @@ std::string Variability::description() const {
   for (const VariationComponent& component : components_) {
     if (!text.empty()) text += " + ";
     text += std::visit(
-        Overloaded{[](const SinusoidalVariation& s) {
-                     return fmt::format("sinusoid of {:.10g} ppm, period {:.12g} s, phase {:.12g} turns",
-                                        kPpm * s.amplitude, s.period, s.phase);
-                   },
-                   [](const PeriodicDips& d) {
-                     return fmt::format(
-                         "dips of {:.10g} ppm, duration {:.12g} s, ingress {:.12g} s, period {:.12g} s, epoch {:.12g} s",
-                         kPpm * d.depth, d.duration, d.ingress, d.period, d.epoch);
-                   },
-                   [](const std::shared_ptr<const SampledVariation>& s) {
-                     return fmt::format("light curve {} of {} samples", s->file, s->time.size());
-                   }},
+        Overloaded{
+            [](const SinusoidalVariation& s) {
+              return fmt::format("sinusoid of {:.10g} ppm, period {:.12g} s, phase {:.12g} turns", kPpm * s.amplitude,
+                                 s.period, s.phase);
+            },
+            [](const PeriodicDips& d) {
+              return fmt::format(
+                  "dips of {:.10g} ppm, duration {:.12g} s, ingress {:.12g} s, period {:.12g} s, epoch {:.12g} s",
+                  kPpm * d.depth, d.duration, d.ingress, d.period, d.epoch);
+            },
+            [](const std::shared_ptr<const SampledVariation>& s) {
+              return fmt::format("light curve {} of {} samples", s->file, s->time.size());
+            }},
         component);
   }
   return text;

@@ -86,9 +86,10 @@ class TableReader {
     constexpr double kAllLight = 1e6;  // ppm
     const std::string_view kind = table_.field(row, *kind_);
     if (kind == "sinusoid") {
-      variability.add(SinusoidalVariation{.amplitude = number(row, "amplitude_ppm", kPpm, 0.0, kAllLight),
-                                          .period = number(row, "period_d", kSecondsPerDay, kLeast, kMost),
-                                          .phase = number(row, "phase_deg", 1.0 / kDegreesPerTurn, -kMost, kMost, 0.0)});
+      variability.add(
+          SinusoidalVariation{.amplitude = number(row, "amplitude_ppm", kPpm, 0.0, kAllLight),
+                              .period = number(row, "period_d", kSecondsPerDay, kLeast, kMost),
+                              .phase = number(row, "phase_deg", 1.0 / kDegreesPerTurn, -kMost, kMost, 0.0)});
     } else if (kind == "transit" || kind == "eclipse") {
       PeriodicDips dips{.depth = number(row, "depth_ppm", kPpm, 0.0, kAllLight),
                         .duration = number(row, "duration_h", kSecondsPerHour, kLeast, kMost),
@@ -96,7 +97,8 @@ class TableReader {
                         .period = number(row, "period_d", kSecondsPerDay, kLeast, kMost),
                         .epoch = number(row, "epoch_d", kSecondsPerDay, -kMost, kMost)};
       if (problems_.empty() && dips.duration > dips.period)
-        complain(row, "duration_h", "longer than the period", fmt::format("at most {:.6g} h", dips.period / kSecondsPerHour));
+        complain(row, "duration_h", "longer than the period",
+                 fmt::format("at most {:.6g} h", dips.period / kSecondsPerHour));
       if (problems_.empty() && 2.0 * dips.ingress > dips.duration)
         complain(row, "ingress_h", "longer than half the duration",
                  fmt::format("at most {:.6g} h", 0.5 * dips.duration / kSecondsPerHour));

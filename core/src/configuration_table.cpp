@@ -37,9 +37,9 @@ constexpr std::array kSections = {
 
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
-  for (auto part :
-       {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters, psf_parameters, stellar_field_parameters, sky_parameters,
-        ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+  for (auto part : {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters,
+                    psf_parameters, stellar_field_parameters, sky_parameters, ccd_parameters, photometry_parameters,
+                    analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

@@ -4,7 +4,7 @@ namespace astroid::configuration {
 
 namespace {
 
-constexpr Range kAngle = from_to(0, 3600);    // arcsec
+constexpr Range kAngle = from_to(0, 3600);     // arcsec
 constexpr Range kRate = from_to(-3600, 3600);  // arcsec per day
 
 }  // namespace
@@ -15,21 +15,24 @@ std::vector<Parameter> motion_parameters() {
        .unit = "arcsec",
        .range = kAngle,
        .fallback = "0",
-       .meaning = "Thermo-elastic drift of the yaw angle: it starts each quarter at 0, follows a polynomial of second order drawn for it, and stays below this.",
+       .meaning = "Thermo-elastic drift of the yaw angle: it starts each quarter at 0, follows a polynomial of second "
+                  "order drawn for it, and stays below this.",
        .example = "12",
        .assign = [](Mission& m, const Value& v) { m.satellite.drift.yaw = Arcseconds(v.real); }},
       {.path = "Satellite/Drift/Pitch",
        .unit = "arcsec",
        .range = kAngle,
        .fallback = "0",
-       .meaning = "Thermo-elastic drift of the pitch angle: it starts each quarter at 0, follows a polynomial of second order drawn for it, and stays below this.",
+       .meaning = "Thermo-elastic drift of the pitch angle: it starts each quarter at 0, follows a polynomial of "
+                  "second order drawn for it, and stays below this.",
        .example = "12",
        .assign = [](Mission& m, const Value& v) { m.satellite.drift.pitch = Arcseconds(v.real); }},
       {.path = "Satellite/Drift/Roll",
        .unit = "arcsec",
        .range = kAngle,
        .fallback = "0",
-       .meaning = "Thermo-elastic drift of the roll angle: it starts each quarter at 0, follows a polynomial of second order drawn for it, and stays below this.",
+       .meaning = "Thermo-elastic drift of the roll angle: it starts each quarter at 0, follows a polynomial of second "
+                  "order drawn for it, and stays below this.",
        .example = "12",
        .assign = [](Mission& m, const Value& v) { m.satellite.drift.roll = Arcseconds(v.real); }},
       {.path = "Satellite/Drift/YawRate",
@@ -84,8 +87,9 @@ std::vector<Parameter> motion_parameters() {
       {.path = "Satellite/Aberration",
        .kind = Kind::kBoolean,
        .fallback = "off",
-       .meaning = "Whether stars move by the kinematic aberration of a spacecraft at the second Lagrange point, relative to "
-                  "the boresight and to the start of the run.",
+       .meaning =
+           "Whether stars move by the kinematic aberration of a spacecraft at the second Lagrange point, relative to "
+           "the boresight and to the start of the run.",
        .example = "on",
        .assign = [](Mission& m, const Value& v) { m.satellite.aberration = v.flag; }},
   };

@@ -42,7 +42,7 @@ std::vector<Parameter> satellite_parameters() {
        .assign =
            [](Mission& m, const Value& v) {
              constexpr JitterModel kModels[] = {JitterModel::kNone, JitterModel::kRedNoise, JitterModel::kFile,
-                                                 JitterModel::kSpectrum};
+                                                JitterModel::kSpectrum};
              m.satellite.jitter.model = kModels[v.choice];
            }},
       {.path = "Satellite/Jitter/Yaw",
@@ -75,8 +75,9 @@ std::vector<Parameter> satellite_parameters() {
        .assign = [](Mission& m, const Value& v) { m.satellite.jitter.timescale = Seconds(v.real); }},
       {.path = "Satellite/Jitter/File",
        .kind = Kind::kFile,
-       .meaning = "Attitude against time (file model): columns time_s, yaw, pitch, roll, angles in arcsec. Or its one-sided "
-                  "power spectral density (psd model): columns frequency_hz, yaw, pitch, roll, in arcsec^2/Hz.",
+       .meaning =
+           "Attitude against time (file model): columns time_s, yaw, pitch, roll, angles in arcsec. Or its one-sided "
+           "power spectral density (psd model): columns frequency_hz, yaw, pitch, roll, in arcsec^2/Hz.",
        .example = "jitter.csv",
        .assign = [](Mission& m, const Value& v) { m.satellite.jitter.file = v.text; }},
   };

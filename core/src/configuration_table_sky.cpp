@@ -27,13 +27,12 @@ std::vector<Parameter> sky_parameters() {
        .kind = Kind::kChoice,
        .fallback = "constant",
        .choices = {"constant", "zodiacal"},
-       .meaning = "Where the sky comes from: the number SkyBackground, or the zodiacal light in the direction and season "
-                  "of the run with UnresolvedStars on top.",
+       .meaning =
+           "Where the sky comes from: the number SkyBackground, or the zodiacal light in the direction and season "
+           "of the run with UnresolvedStars on top.",
        .example = "zodiacal",
-       .assign =
-           [](Mission& m, const Value& v) {
-             m.field.sky = v.choice == 0 ? SkyModel::kConstant : SkyModel::kZodiacal;
-           }},
+       .assign = [](Mission& m,
+                    const Value& v) { m.field.sky = v.choice == 0 ? SkyModel::kConstant : SkyModel::kZodiacal; }},
       {.path = "StellarField/UnresolvedStars",
        .unit = "S10",
        .range = from_to(0, 1e6),

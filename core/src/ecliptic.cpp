@@ -36,8 +36,8 @@ EarthPlace earth_place(double mjd) {
   const double perihelion = kRadian * (kPerihelion + kPerihelionRate * centuries);
   const double anomaly = kRadian * (kMeanLongitude + kMeanLongitudeRate * centuries) - perihelion;
   // Equation of the centre to e²; the next term is 1e-5 rad.
-  const double centre = 2.0 * kEccentricity * det::sin(anomaly) +
-                        1.25 * kEccentricity * kEccentricity * det::sin(2.0 * anomaly);
+  const double centre =
+      2.0 * kEccentricity * det::sin(anomaly) + 1.25 * kEccentricity * kEccentricity * det::sin(2.0 * anomaly);
   return {Radians(perihelion + anomaly + centre), Radians(perihelion), kEccentricity};
 }
 

@@ -115,8 +115,7 @@ std::shared_ptr<const AttitudeModel> make_file_attitude(const std::string& path,
   const CsvTable table = read_csv(path);
   std::vector<Problem> problems;
   constexpr std::array<const char*, 4> kNames{"time_s", "yaw", "pitch", "roll"};
-  const auto columns =
-      find_named_columns(table, kNames, "columns time_s, yaw, pitch, roll (s, arcsec)", problems);
+  const auto columns = find_named_columns(table, kNames, "columns time_s, yaw, pitch, roll (s, arcsec)", problems);
   if (!problems.empty()) throw InputError(std::move(problems));
 
   std::vector<double> time;

@@ -46,7 +46,8 @@ bool is_zero(const std::array<double, kAxes>& values) {
 
 class DriftingAttitude final : public AttitudeModel {
  public:
-  DriftingAttitude(std::shared_ptr<const AttitudeModel> noise, AttitudeTrend trend, const SimulationSettings& simulation)
+  DriftingAttitude(std::shared_ptr<const AttitudeModel> noise, AttitudeTrend trend,
+                   const SimulationSettings& simulation)
       : noise_(std::move(noise)),
         trend_(std::move(trend)),
         cycle_(simulation.cycle.value()),
@@ -137,8 +138,7 @@ AttitudeTrend thermo_elastic_drift(const SatelliteSettings& satellite, const Sim
         return uniform_at_step(stream, {.step = q, .axis = static_cast<std::uint32_t>(axis), .draw = draw});
       };
       const double signed_amplitude = uniform(0) < 0.5 ? -amplitude[axis] : amplitude[axis];
-      quarters[q][axis].linear =
-          rate[axis] / kSecondsPerDay + signed_amplitude * kLargestLinear * uniform(1) / pace;
+      quarters[q][axis].linear = rate[axis] / kSecondsPerDay + signed_amplitude * kLargestLinear * uniform(1) / pace;
       quarters[q][axis].quadratic = -signed_amplitude * kLargestQuadratic * uniform(2) / (pace * pace);
     }
   return {std::move(quarters), length, end_of_run(simulation)};

@@ -38,13 +38,14 @@ struct Table {
   }
 };
 
-using CcdTable = Table<ProperMotionEffect,  // Catalogue
-                       JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                       Stars, VariableStars,                        // Optics
-                       Sky, ZodiacalSky, StrayLight,                // Sky
-                       Prnu, DarkCurrent,                           // PixelMean
-                       PhotonNoise, FullWell,                       // PixelSample
-                       ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout
+using CcdTable =
+    Table<ProperMotionEffect,                                                                    // Catalogue
+          JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
+          Stars, VariableStars,                                                                  // Optics
+          Sky, ZodiacalSky, StrayLight,                                                          // Sky
+          Prnu, DarkCurrent,                                                                     // PixelMean
+          PhotonNoise, FullWell,                                                                 // PixelSample
+          ReadoutNoise, GainEffect, BiasEffect, Adc>;                                            // Readout
 
 }  // namespace
 

@@ -60,8 +60,8 @@ JitterSpectrum read_jitter_spectrum(const std::string& path) {
   constexpr std::array<const char*, 4> kNames{"frequency_hz", "yaw", "pitch", "roll"};
   const CsvTable table = read_csv(path);
   std::vector<Problem> problems;
-  const auto columns = find_named_columns(
-      table, kNames, "columns frequency_hz, yaw, pitch, roll (Hz, arcsec²/Hz, one-sided)", problems);
+  const auto columns =
+      find_named_columns(table, kNames, "columns frequency_hz, yaw, pitch, roll (Hz, arcsec²/Hz, one-sided)", problems);
   if (!problems.empty()) throw InputError(std::move(problems));
   std::vector<double> frequency;
   std::array<std::vector<double>, 3> density;
@@ -71,7 +71,8 @@ JitterSpectrum read_jitter_spectrum(const std::string& path) {
     bool good = true;
     const double least = frequency.empty() ? 0.0 : frequency.back();
     if (!((*values)[0] > least)) {
-      problems.push_back(table.problem(row, *columns[0], "frequency does not increase", fmt::format("more than {}", least)));
+      problems.push_back(
+          table.problem(row, *columns[0], "frequency does not increase", fmt::format("more than {}", least)));
       good = false;
     }
     for (std::size_t axis = 0; axis < density.size(); ++axis) {

@@ -8,8 +8,8 @@
 namespace astroid {
 
 namespace {
-/// Motions that go back and forth stay within a few cells, and drift leaves them behind. So many are kept, or as many as
-/// fit into this memory, but always the two at a border.
+/// Motions that go back and forth stay within a few cells, and drift leaves them behind. So many are kept, or as many
+/// as fit into this memory, but always the two at a border.
 constexpr std::size_t kMostCells = 9;
 constexpr double kMostBytes = 512.0 * 1024.0 * 1024.0;
 

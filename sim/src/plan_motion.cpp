@@ -29,7 +29,7 @@ AttitudeReach per_arcsec(const Scene& scene) {
 /// A polynomial and what it costs.
 struct Candidate {
   AttitudePolynomial polynomial;
-  double left_out = 0.0;  ///< bound on what it neglects, relative
+  double left_out = 0.0;                                     ///< bound on what it neglects, relative
   double seconds = std::numeric_limits<double>::infinity();  ///< an exposure, its share of making the cells included
 };
 
@@ -58,13 +58,14 @@ Candidate with_part(const Scene& scene, const Plan& plan, const AttitudeReach& u
   if (terms.empty() || maps_bytes(terms.size(), pixels) > kMostBytes) return candidate;
   // The cells along the drift, each entered once: borders that are crossed in several axes count for each.
   const auto entered = [](double extent, double half_width) { return half_width > 0.0 ? extent / half_width : 0.0; };
-  const double cells = scene.attitude_trend().is_still()
-                           ? 0.0
-                           : 1.0 + entered(drift.yaw, scale.yaw) + entered(drift.pitch, scale.pitch) +
-                                 entered(drift.roll, scale.roll);
+  const double cells =
+      scene.attitude_trend().is_still()
+          ? 0.0
+          : 1.0 + entered(drift.yaw, scale.yaw) + entered(drift.pitch, scale.pitch) + entered(drift.roll, scale.roll);
   Plan once = plan;
   once.knobs.jitter = JitterTreatment::kShift;
-  const double share = cells * static_cast<double>(terms.size()) / static_cast<double>(scene.mission().simulation.exposures);
+  const double share =
+      cells * static_cast<double>(terms.size()) / static_cast<double>(scene.mission().simulation.exposures);
   candidate.seconds = maps_seconds(terms.size(), pixels) + share * full_frame_seconds(once, scene);
   return candidate;
 }

@@ -42,8 +42,7 @@ std::shared_ptr<const AttitudeModel> make_jitter(const Mission& mission) {
     case JitterModel::kNone:
       return make_still_attitude();
     case JitterModel::kRedNoise:
-      return make_red_noise_attitude(jitter, mission.simulation,
-                                     attitude_stream(mission, JitterModelEffect::kSpec.id));
+      return make_red_noise_attitude(jitter, mission.simulation, attitude_stream(mission, JitterModelEffect::kSpec.id));
     case JitterModel::kFile:
       return make_file_attitude(jitter.file, mission.simulation);
     case JitterModel::kSpectrum:
@@ -166,8 +165,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
 
   if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
   constexpr double kSecondsPerDay = 86400.0;
-  summary_.epoch = julian_year(mission_.simulation.start_mjd +
-                               middle_of_run(mission_.simulation).value() / kSecondsPerDay);
+  summary_.epoch =
+      julian_year(mission_.simulation.start_mjd + middle_of_run(mission_.simulation).value() / kSecondsPerDay);
 
   const double exposure = mission_.simulation.exposure_time.value();
   const AttitudeVariance jitter = attitude_->variance();
@@ -185,9 +184,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
       if (moves) {
         ++summary_.moved_stars;
         constexpr double kArcsecPerDegree = 3600.0;
-        summary_.proper_motion_px =
-            std::max(summary_.proper_motion_px, angular_separation(s.sky, star.sky).value() * kArcsecPerDegree /
-                                                    ccd.pixel_scale.value());
+        summary_.proper_motion_px = std::max(summary_.proper_motion_px, angular_separation(s.sky, star.sky).value() *
+                                                                            kArcsecPerDegree / ccd.pixel_scale.value());
       }
       const std::optional<PixelPosition> position = projection_->to_pixel(s.sky);
       if (!position) {
@@ -333,17 +331,15 @@ void Scene::read_variable_stars(const StarCatalogue& catalogue) {
     summary_.largest_variation = std::max(summary_.largest_variation, change * star.electrons);
   }
   if (summary_.variable_stars < variables_.size())
-    notes_.push_back(fmt::format("{} variable stars are not on the detector",
-                                 variables_.size() - summary_.variable_stars));
+    notes_.push_back(
+        fmt::format("{} variable stars are not on the detector", variables_.size() - summary_.variable_stars));
 }
 
 void Scene::find_sky() {
   rate_of_s10_ = rate_of_one_s10(mission_);
   const Rectangle d = detector();
-  const PixelPosition places[] = {{d.x0 - 0.5, d.y0 - 0.5},
-                                  {d.x1() - 0.5, d.y0 - 0.5},
-                                  {d.x0 - 0.5, d.y1() - 0.5},
-                                  {d.x1() - 0.5, d.y1() - 0.5}};
+  const PixelPosition places[] = {
+      {d.x0 - 0.5, d.y0 - 0.5}, {d.x1() - 0.5, d.y0 - 0.5}, {d.x0 - 0.5, d.y1() - 0.5}, {d.x1() - 0.5, d.y1() - 0.5}};
   for (std::size_t i = 0; i < corners_.size(); ++i) {
     corners_[i] = projection_->to_sky(places[i]);
     if (!std::isfinite(corners_[i].ra)) corners_[i] = projection_->axis();  // beyond the projection

@@ -10,7 +10,7 @@ namespace astroid {
 
 namespace {
 
-constexpr std::size_t kPhasors = 4;   // of a line: cosine and sine of its phase, and of what a step adds
+constexpr std::size_t kPhasors = 4;  // of a line: cosine and sine of its phase, and of what a step adds
 constexpr std::size_t kAmplitudes = 2 * SpectralNoise::kAxes;  // of a line in a block: cosine and sine of each axis
 
 /// The later of two overlapping windows, and the earlier; their squares add up to 1. @param u  0 .. 1 of the overlap
@@ -70,9 +70,10 @@ void SpectralNoise::draw(const Octave& octave, std::int64_t block, std::array<do
         values[2 * axis + part][k] =
             variance > 0.0
                 ? det::sqrt(variance) *
-                      normal_at_step(stream_, {.step = static_cast<std::uint64_t>(block + 1),  // the first is block -1
-                                               .axis = static_cast<std::uint32_t>(axis),
-                                               .draw = static_cast<std::uint32_t>((octave.number * kLines + k) * 2 + part)})
+                      normal_at_step(stream_,
+                                     {.step = static_cast<std::uint64_t>(block + 1),  // the first is block -1
+                                      .axis = static_cast<std::uint32_t>(axis),
+                                      .draw = static_cast<std::uint32_t>((octave.number * kLines + k) * 2 + part)})
                 : 0.0;
       }
 }
@@ -152,7 +153,8 @@ AttitudeVariance SpectralNoise::filtered(double longest, Response&& response) co
       double mean = 0.0;
       for (std::size_t i = 0; i < samples; ++i) {
         const double place = (static_cast<double>(i) + 0.5) * kGolden;
-        mean += response(octave.frequency[k] + width * (place - std::floor(place) - 0.5)) / static_cast<double>(samples);
+        mean +=
+            response(octave.frequency[k] + width * (place - std::floor(place) - 0.5)) / static_cast<double>(samples);
       }
       for (std::size_t axis = 0; axis < kAxes; ++axis) sum[axis] += octave.variance[axis][k] * mean;
     }

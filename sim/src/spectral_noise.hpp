@@ -15,11 +15,11 @@ namespace astroid {
 
 /// Three independent stationary Gaussian processes (yaw, pitch, roll).
 ///
-/// Each octave of frequency, from the lowest of the spectrum, has sixteen equally spaced lines, which carry the power of
-/// the spectrum around them. The amplitudes of their cosines and sines are drawn anew for every block of sixteen periods
-/// of the octave's lowest frequency; blocks overlap by half, under windows whose squares add up to 1. So the variance is
-/// that of the spectrum at every time, the spectrum is continuous, with a resolution of 1/16 to 1/32 of the frequency,
-/// nothing repeats, and any time can be asked for alone.
+/// Each octave of frequency, from the lowest of the spectrum, has sixteen equally spaced lines, which carry the power
+/// of the spectrum around them. The amplitudes of their cosines and sines are drawn anew for every block of sixteen
+/// periods of the octave's lowest frequency; blocks overlap by half, under windows whose squares add up to 1. So the
+/// variance is that of the spectrum at every time, the spectrum is continuous, with a resolution of 1/16 to 1/32 of the
+/// frequency, nothing repeats, and any time can be asked for alone.
 /// @source Shinozuka1991 (sums of cosines), PrincenBradley1986 (windows that overlap); the window is
 /// sin(pi/2 sin²(pi/2 u)), whose spectrum falls fast enough for spectra up to f^-5.
 class SpectralNoise {
@@ -31,10 +31,10 @@ class SpectralNoise {
 
   /// What is remembered of the blocks around the last time asked for; any state gives the same values.
   struct Blocks {
-    double step = 0.0;                               ///< s, that the phasors turn by
-    std::vector<std::int64_t> number;                ///< [octave] of the later of the two blocks
-    std::vector<std::array<double, kLines>> values;  ///< [octave][earlier, later][axis][cosine, sine]
-    std::vector<std::array<double, kLines>> phasors; ///< [octave][cosine, sine, of one step: cosine, sine]
+    double step = 0.0;                                ///< s, that the phasors turn by
+    std::vector<std::int64_t> number;                 ///< [octave] of the later of the two blocks
+    std::vector<std::array<double, kLines>> values;   ///< [octave][earlier, later][axis][cosine, sine]
+    std::vector<std::array<double, kLines>> phasors;  ///< [octave][cosine, sine, of one step: cosine, sine]
   };
 
   /// The noise at `begin` + (i + 1/2) `step`, i = 0 … out.size() - 1; arcsec. @param begin  s, >= 0

@@ -23,10 +23,10 @@ double excursion(const SceneStar& star, const Attitude& farthest) {
   constexpr double kFastest = 2.1e-4;  // change of the spacecraft's velocity in half a year, in units of c
   const AttitudeJacobian& j = star.motion;
   const AberrationJacobian& a = star.aberration;
-  const double aberration = det::hypot(det::hypot(det::hypot(a.x[0], a.x[1]), a.x[2]),
-                                       det::hypot(det::hypot(a.y[0], a.y[1]), a.y[2]));
-  return kFastest * aberration + det::hypot(j.dx_dyaw, j.dy_dyaw) * farthest.yaw + det::hypot(j.dx_dpitch, j.dy_dpitch) * farthest.pitch +
-         det::hypot(j.dx_droll, j.dy_droll) * farthest.roll;
+  const double aberration =
+      det::hypot(det::hypot(det::hypot(a.x[0], a.x[1]), a.x[2]), det::hypot(det::hypot(a.y[0], a.y[1]), a.y[2]));
+  return kFastest * aberration + det::hypot(j.dx_dyaw, j.dy_dyaw) * farthest.yaw +
+         det::hypot(j.dx_dpitch, j.dy_dpitch) * farthest.pitch + det::hypot(j.dx_droll, j.dy_droll) * farthest.roll;
 }
 
 }  // namespace
@@ -64,8 +64,8 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     list.reserve(found.size());
     for (const std::uint32_t i : found) {
       const SceneStar& star = scene.stars()[i];
-      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion, star.aberration,
-                      star.variability});
+      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion,
+                      star.aberration, star.variability});
     }
   }
   return lists;

@@ -7,7 +7,8 @@
 
 namespace astroid {
 
-/// Compares how far stars are displaced at most in the run, to second order in their flux in a mask, with the tolerance.
+/// Compares how far stars are displaced at most in the run, to second order in their flux in a mask, with the
+/// tolerance.
 EffectNeed displacement_need(const SceneSummary& scene, double displacement, std::string_view what);
 
 }  // namespace astroid

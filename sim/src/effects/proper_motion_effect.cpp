@@ -5,8 +5,7 @@
 namespace astroid {
 
 EffectNeed ProperMotionEffect::is_needed(const SceneSummary& scene) const {
-  if (!scene.mission->field.proper_motion)
-    return {false, "proper motion is left out by the configuration", 0.0, 0.0};
+  if (!scene.mission->field.proper_motion) return {false, "proper motion is left out by the configuration", 0.0, 0.0};
   if (scene.moved_stars == 0) return {false, "no star has a proper motion", 0.0, 0.0};
   // It costs nothing once the scene is built, so it is never left out for being small.
   return {true,

@@ -9,8 +9,8 @@ namespace astroid {
 /// other pixels under every star: it is another scene, with another Roll, and not part of a run.
 class RepointingEffect final : public Effect {
  public:
-  static constexpr EffectSpec kSpec{"re-pointing", StreamId{21},         EffectLevel::kPointing, 0U,
-                                    plane_bit::kAttitude, 0, RandomScope::kStatic, ""};
+  static constexpr EffectSpec kSpec{
+      "re-pointing", StreamId{21}, EffectLevel::kPointing, 0U, plane_bit::kAttitude, 0, RandomScope::kStatic, ""};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
   void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;

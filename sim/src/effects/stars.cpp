@@ -26,7 +26,8 @@ EffectNeed Stars::is_needed(const SceneSummary& scene) const {
 void Stars::prepare(CameraState& camera, const PrepareContext& context) const {
   std::vector<Rectangle> areas;
   for (const Strip& strip : camera.strips) areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
-  auto lists = star_lists(context.scene, context.knobs, areas, farthest_attitude(context), context.knobs.variables ? StarChoice::kConstant : StarChoice::kAll);
+  auto lists = star_lists(context.scene, context.knobs, areas, farthest_attitude(context),
+                          context.knobs.variables ? StarChoice::kConstant : StarChoice::kAll);
   auto list = lists.begin();
   for (const Strip& strip : camera.strips) {
     const auto end = list + static_cast<std::ptrdiff_t>(strip.areas.size());

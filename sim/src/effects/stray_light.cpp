@@ -20,8 +20,8 @@ void StrayLight::apply(ExposureState& state, const EffectContext& context, const
   const double level = (stray.level * context.scene.mission().simulation.exposure_time).value();
   const double x = level * stray.gradient_x;
   const double y = level * stray.gradient_y;
-  add_light(BilinearLight(context.scene.detector(), {level - x - y, level + x - y, level - x + y, level + x + y}), strip,
-            state.expected);
+  add_light(BilinearLight(context.scene.detector(), {level - x - y, level + x - y, level - x + y, level + x + y}),
+            strip, state.expected);
 }
 
 }  // namespace astroid

@@ -10,14 +10,10 @@ namespace astroid {
 /// Flux and motion within an exposure are taken as independent of each other.
 class VariableStars final : public Effect {
  public:
-  static constexpr EffectSpec kSpec{"variable-stars",
-                                    StreamId{26},
-                                    EffectLevel::kOptics,
-                                    plane_bit::kStars | plane_bit::kAttitude,
-                                    plane_bit::kExpected,
-                                    0,
-                                    RandomScope::kNone,
-                                    "",
+  static constexpr EffectSpec kSpec{"variable-stars",        StreamId{26},
+                                    EffectLevel::kOptics,    plane_bit::kStars | plane_bit::kAttitude,
+                                    plane_bit::kExpected,    0,
+                                    RandomScope::kNone,      "",
                                     ImageRole::kVaryingLight};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;

@@ -29,10 +29,10 @@ TEST(Coordinates, OfKnownDirections) {
 }
 
 TEST(ZodiacalLight, HasTheBrightnessOfTheTable) {
-  EXPECT_NEAR(zodiacal_light(Degrees(180.0), Degrees(0.0)).value, 180.0, 0.4);     // gegenschein: 180 S10
-  EXPECT_NEAR(zodiacal_light(Degrees(10.0), Degrees(90.0)).value, 60.0, 0.4);      // pole: 60 S10
-  EXPECT_NEAR(zodiacal_light(Degrees(-90.0), Degrees(0.0)).value, 202.0, 0.5);     // 202 S10
-  EXPECT_NEAR(zodiacal_light(Degrees(270.0), Degrees(-30.0)).value, 103.0, 0.5);   // both signs
+  EXPECT_NEAR(zodiacal_light(Degrees(180.0), Degrees(0.0)).value, 180.0, 0.4);    // gegenschein: 180 S10
+  EXPECT_NEAR(zodiacal_light(Degrees(10.0), Degrees(90.0)).value, 60.0, 0.4);     // pole: 60 S10
+  EXPECT_NEAR(zodiacal_light(Degrees(-90.0), Degrees(0.0)).value, 202.0, 0.5);    // 202 S10
+  EXPECT_NEAR(zodiacal_light(Degrees(270.0), Degrees(-30.0)).value, 103.0, 0.5);  // both signs
   // Between nodes it stays between them.
   const double between = zodiacal_light(Degrees(97.0), Degrees(12.0)).value;
   EXPECT_LT(between, zodiacal_light(Degrees(90.0), Degrees(10.0)).value);
@@ -53,8 +53,8 @@ TEST(UnresolvedStarlight, IsBrightInThePlaneAndFaintAtThePole) {
   const double centre = unresolved_starlight({266.40500, -28.93617}).value;
   const double anticentre = unresolved_starlight({86.405, 28.936}).value;
   const double pole = unresolved_starlight({192.85948, 27.12825}).value;
-  std::printf("unresolved stars: %.0f S10 at the centre, %.1f at the anticentre, %.2g at the pole\n", centre, anticentre,
-              pole);
+  std::printf("unresolved stars: %.0f S10 at the centre, %.1f at the anticentre, %.2g at the pole\n", centre,
+              anticentre, pole);
   // I = 18.973 mag per square arcsec at the origin of the fit, V = 19.673: 3600² 10^(-0.4 (19.673 - 10)) S10.
   EXPECT_NEAR(centre / (3600.0 * 3600.0 * std::pow(10.0, -0.4 * 9.67338)), 1.0, 0.01);
   EXPECT_LT(anticentre, 0.05 * centre);
@@ -69,8 +69,8 @@ TEST(SkyRate, TurnsS10IntoElectrons) {
   const double solid_angle = (15.0 / 3600.0) * (15.0 / 3600.0);
   EXPECT_NEAR(rate_of_one_s10(mission).value(), solid_angle * std::pow(10.0, 0.4 * 10.62), 1e-9);
   mission.telescope.zero_point_passband = "P";  // the Sun is 0.378 mag brighter there
-  EXPECT_NEAR(rate_of_one_s10(mission).value() / (solid_angle * std::pow(10.0, 0.4 * 10.62)), std::pow(10.0, 0.4 * 0.3776),
-              1e-3);
+  EXPECT_NEAR(rate_of_one_s10(mission).value() / (solid_angle * std::pow(10.0, 0.4 * 10.62)),
+              std::pow(10.0, 0.4 * 0.3776), 1e-3);
   // PLATO's southern field, 15 arcsec/px: the normal cameras expect about 45 to 60 e-/px/s with the stars in it.
   mission.field.sky = SkyModel::kZodiacal;
   mission.satellite.ra = Degrees(95.3104);

@@ -62,8 +62,8 @@ TEST(Aberration, EarthIsFastInJanuaryAndMovesAwayFromTheMarchSun) {
   const double km = 299792.458 / 1.01004;
   EXPECT_NEAR(fastest * km, 30.29, 0.01);  // km/s at perihelion
   EXPECT_NEAR(when, 61408.0, 2.0);         // 2027 January 3; the Moon moves the date by up to two days
-  // At the March equinox (2027 March 20, 20:25 UT) the Sun is at right ascension 0, the Earth opposite: it moves towards
-  // right ascension 270 deg, declination -23.4 deg, the equinox of date being 0.38 deg from that of J2000.
+  // At the March equinox (2027 March 20, 20:25 UT) the Sun is at right ascension 0, the Earth opposite: it moves
+  // towards right ascension 270 deg, declination -23.4 deg, the equinox of date being 0.38 deg from that of J2000.
   const Velocity v = spacecraft_velocity(61484.851);
   // The ellipse adds 0.0167 of the speed at a right angle to its long axis, which points to 103 deg.
   const double degree = std::acos(-1.0) / 180.0;
@@ -95,8 +95,8 @@ TEST(Aberration, MovesStarsAsTheExactFormulaDoes) {
     for (const double radius : {2.0, 8.0, 15.0})
       for (int i = 0; i < 8; ++i) {
         const double angle = i * std::acos(-1.0) / 4.0;
-        stars.push_back(inverse_gnomonic(
-            {radius * std::cos(angle) * 1.1, radius * std::sin(angle) * 1.1}, pointing.axis));
+        stars.push_back(
+            inverse_gnomonic({radius * std::cos(angle) * 1.1, radius * std::sin(angle) * 1.1}, pointing.axis));
       }
     for (const double mjd : {61406.0, 61500.0, 61590.0}) {
       const Velocity v = spacecraft_velocity(mjd);

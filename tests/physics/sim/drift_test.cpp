@@ -1,4 +1,5 @@
-// A field that drifts: the light in a fixed mask follows the exact curve, without lines where the numerics change cells.
+// A field that drifts: the light in a fixed mask follows the exact curve, without lines where the numerics change
+// cells.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -119,11 +120,11 @@ TEST_P(DriftingStar, ShowsNoLineAboveOnePpm) {
     highest = std::max(highest, exact);
   }
   const double line = highest_line(residual);
-  std::printf("%zu stars, %s, %zu terms, cells of +-%.3g px: flux changes by %.3g %%, residual up to %.3g ppm, highest "
-              "line %.3g ppm\n",
-              scene->stars().size(), std::string(to_string(plan->knobs.jitter)).c_str(),
-              plan->knobs.polynomial.terms.size(), plan->knobs.polynomial.scale.yaw / 15.0,
-              100.0 * (highest / lowest - 1.0), worst, line);
+  std::printf(
+      "%zu stars, %s, %zu terms, cells of +-%.3g px: flux changes by %.3g %%, residual up to %.3g ppm, highest "
+      "line %.3g ppm\n",
+      scene->stars().size(), std::string(to_string(plan->knobs.jitter)).c_str(), plan->knobs.polynomial.terms.size(),
+      plan->knobs.polynomial.scale.yaw / 15.0, 100.0 * (highest / lowest - 1.0), worst, line);
   EXPECT_GT(highest / lowest, 1.05);
   EXPECT_LT(line, 1.0);
   EXPECT_LT(worst, 1.0);
@@ -252,8 +253,8 @@ TEST(Aberration, MovesTheImageAsItsJacobianSays) {
     changed = std::max(changed, std::abs(exact / unmoved - 1.0));
     worst = std::max(worst, std::abs(mask_sum(state) - exact) / scene->summary().flux_tolerance(star.electrons));
   }
-  std::printf("aberration moves the star by up to %.4f px and its flux by %.3g ppm, to %.2g of the tolerance\n", farthest,
-              1e6 * changed, worst);
+  std::printf("aberration moves the star by up to %.4f px and its flux by %.3g ppm, to %.2g of the tolerance\n",
+              farthest, 1e6 * changed, worst);
   EXPECT_GT(farthest, 0.02);
   EXPECT_GT(changed, 1e-4);
   EXPECT_LT(worst, 0.3);  // its share of the tolerance, by epochs

@@ -95,8 +95,7 @@ std::vector<test::EffectScene> scenes() {
           "variable-stars", [](Mission& m) { m.field.variables = variables_file(); },
           [](Mission& m) { m.field.variables.clear(); }),
       scene("sky", {}, [](Mission& m) { m.field.sky_background = ElectronsPerSecond(0.0); }),
-      scene(
-          "zodiacal-sky", [](Mission& m) { m.field.sky = SkyModel::kZodiacal; }, {}),
+      scene("zodiacal-sky", [](Mission& m) { m.field.sky = SkyModel::kZodiacal; }, {}),
       scene(
           "stray-light",
           [](Mission& m) {

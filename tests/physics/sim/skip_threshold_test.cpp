@@ -117,7 +117,8 @@ INSTANTIATE_TEST_SUITE_P(
                              10.0},
                     SkipCase{"zodiacal-sky",
                              [](Mission& m, double v) {
-                               // The pixel makes the sky faint: its scale, not the stars of the laboratory, is the strength.
+                               // The pixel makes the sky faint: its scale, not the stars of the laboratory, is the
+                               // strength.
                                m.field.sky = SkyModel::kZodiacal;
                                m.ccd.pixel_scale = PixelScale(v);
                              },

@@ -10,7 +10,6 @@
 namespace astroid {
 namespace {
 
-
 /// S = level (f / 1 Hz)^-alpha from low to high, in yaw; white of the same ends in pitch; nothing in roll.
 JitterSpectrum power_law(double alpha, double level, double low, double high) {
   return {PowerSpectrum({low, high}, {level * std::pow(low, -alpha), level * std::pow(high, -alpha)}),
@@ -106,7 +105,8 @@ TEST(JitterSpectrum, HasTheVarianceOfItsIntegralAtEveryTime) {
   std::vector<double> squares(kPhases, 0.0);
   double mean = 0.0;
   double fourth = 0.0;
-  // Blocks of the slowest octave last 1600 s and begin every 800 s: these instants fall on the same places between them.
+  // Blocks of the slowest octave last 1600 s and begin every 800 s: these instants fall on the same places between
+  // them.
   const auto attitude = model(white, 100.0, 1.0, 3)->sample(kSamples, 1);
   for (std::size_t i = 0; i < attitude.size(); ++i) {
     const double x = attitude[i].yaw;
@@ -187,7 +187,8 @@ TEST(JitterSpectrum, TakesAsManyStepsAsTheMeanNeeds) {
       for (std::size_t i = 0; i < static_cast<std::size_t>(steps); ++i) {
         coarse_mean += fine[(k * static_cast<std::size_t>(steps) + i) * per + kFine].yaw / steps;
         for (std::size_t j = 0; j < per; ++j)
-          fine_mean += fine[(k * static_cast<std::size_t>(steps) + i) * per + j].yaw / (steps * static_cast<double>(per));
+          fine_mean +=
+              fine[(k * static_cast<std::size_t>(steps) + i) * per + j].yaw / (steps * static_cast<double>(per));
       }
       squares += (coarse_mean - fine_mean) * (coarse_mean - fine_mean) / static_cast<double>(kExposures);
     }

@@ -46,8 +46,9 @@ TEST(ProperMotion, GoesBackTheWayItCame) {
 TEST(ProperMotion, IsReadWithItsEpoch) {
   const test::TemporaryFolder folder;
   const StarCatalogue gaia = read_catalogue(
-      folder.write("gaia.csv",
-                   "source_id,ra,dec,phot_g_mean_mag,pmra,pmdec,ref_epoch\n1,10,20,9,5.5,-7,2016.0\n2,11,20,9,,,2016.0\n"),
+      folder.write(
+          "gaia.csv",
+          "source_id,ra,dec,phot_g_mean_mag,pmra,pmdec,ref_epoch\n1,10,20,9,5.5,-7,2016.0\n2,11,20,9,,,2016.0\n"),
       {});
   EXPECT_EQ(gaia.stars[0].pm_ra, 5.5);
   EXPECT_EQ(gaia.stars[0].pm_dec, -7.0);

@@ -114,9 +114,10 @@ TEST(VariableStars, AreReadFromATable) {
 
 TEST(VariableStars, AreRefusedWithEveryProblem) {
   EXPECT_EQ(problems_of("id,period_d\nA,1\n"), "1: column kind: is missing; ");
-  EXPECT_EQ(problems_of("id,kind,amplitude_ppm,period_d\nA,sinusoid,2e6,0\n,sinusoid,1,1\nB,pulsar,1,1\n"),
-            "2: column amplitude_ppm = 2e6: out of range; 2: column period_d = 0: out of range; 3: column id: is missing; "
-            "4: column kind = pulsar: is not a kind of variable star; ");
+  EXPECT_EQ(
+      problems_of("id,kind,amplitude_ppm,period_d\nA,sinusoid,2e6,0\n,sinusoid,1,1\nB,pulsar,1,1\n"),
+      "2: column amplitude_ppm = 2e6: out of range; 2: column period_d = 0: out of range; 3: column id: is missing; "
+      "4: column kind = pulsar: is not a kind of variable star; ");
   EXPECT_EQ(problems_of("id,kind,depth_ppm,duration_h,ingress_h,period_d,epoch_d\nA,transit,100,30,0,1,0\n"),
             "2: column duration_h = 30: longer than the period; ");
   EXPECT_EQ(problems_of("id,kind,depth_ppm,duration_h,ingress_h,period_d,epoch_d\nA,transit,100,3,2,1,0\n"),
@@ -127,7 +128,8 @@ TEST(VariableStars, AreRefusedWithEveryProblem) {
             "3: column kind = sinusoid: lets the flux of A become negative; ");
   EXPECT_EQ(problems_of("id,kind,file\nA,lightcurve,none.csv\nB,lightcurve,\n"),
             "2: column file = none.csv: no such file; 3: column file: is missing, which lightcurve needs; ");
-  EXPECT_EQ(problems_of("id,kind,file\nA,lightcurve,short.csv\n"), "0: column time_s: 2 samples do not cover the run; ");
+  EXPECT_EQ(problems_of("id,kind,file\nA,lightcurve,short.csv\n"),
+            "0: column time_s: 2 samples do not cover the run; ");
   EXPECT_EQ(problems_of("id,kind,file\nA,lightcurve,bad.csv\n"),
             "3: column time_s = 0: is not a time after the one before; 4: column flux = -1: is not a relative flux; "
             "5: column flux = x: is not a relative flux; ");

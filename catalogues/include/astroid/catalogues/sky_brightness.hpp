@@ -14,8 +14,8 @@ struct S10 {
 
 /// Zodiacal light seen from the Earth's orbit, at 500 nm.
 ///
-/// Bilinear in the logarithm of a table by ecliptic latitude and longitude from the Sun. About 10 % by the table itself;
-/// the dust cloud's own tilt and the seasons' 2 % of distance are not in it.
+/// Bilinear in the logarithm of a table by ecliptic latitude and longitude from the Sun. About 10 % by the table
+/// itself; the dust cloud's own tilt and the seasons' 2 % of distance are not in it.
 /// @param from_sun  ecliptic longitude from the Sun's, any sign.  @param latitude  ecliptic
 /// @throws InputError nearer to the Sun than the table goes, about 15 deg.
 /// @source Leinert1998 Table 17 (1.28e-8 W m^-2 sr^-1 um^-1 are one S10)

@@ -14,9 +14,10 @@ using Velocity = std::array<double, 3>;
 
 /// Velocity of a spacecraft that stays at the second Lagrange point, about the Sun: 1.01 of the Earth's.
 ///
-/// Keplerian, from the mean elements of the orbit of the Earth and Moon. A halo orbit's own 0.1 … 0.3 km/s is not in it.
-/// @param mjd  TDB, 1800 … 2050.  @accuracy 1e-3 of the speed: the Sun's own motion, and the Earth's about the Moon's and
-/// its centre of mass (test: Aberration.VelocityIsTheDerivativeOfAKeplerOrbit)
+/// Keplerian, from the mean elements of the orbit of the Earth and Moon. A halo orbit's own 0.1 … 0.3 km/s is not in
+/// it.
+/// @param mjd  TDB, 1800 … 2050.  @accuracy 1e-3 of the speed: the Sun's own motion, and the Earth's about the Moon's
+/// and its centre of mass (test: Aberration.VelocityIsTheDerivativeOfAKeplerOrbit)
 /// @source Standish1992
 Velocity spacecraft_velocity(double mjd);
 

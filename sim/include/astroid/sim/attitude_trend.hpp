@@ -11,8 +11,8 @@
 
 namespace astroid {
 
-/// A second-order polynomial of time in each quarter, which begins anew when the spacecraft is pointed again. An exposure
-/// belongs to the quarter in which it begins. Immutable.
+/// A second-order polynomial of time in each quarter, which begins anew when the spacecraft is pointed again. An
+/// exposure belongs to the quarter in which it begins. Immutable.
 class AttitudeTrend {
  public:
   /// Nothing moves.
@@ -48,9 +48,9 @@ class AttitudeTrend {
 };
 
 /// The drift of each quarter: the linear rate of the configuration, and a thermo-elastic part of each axis,
-/// A s (0.972 b t/Q - 0.504 a (t/Q)²) arcsec with A its amplitude, Q the length of a quarter, t the time since it began,
-/// a and b uniform in 0 .. 1 and the sign s drawn for each quarter and axis: it starts at 0, stays within A, and as a
-/// rule turns back. @source Jannsen2024
+/// A s (0.972 b t/Q - 0.504 a (t/Q)²) arcsec with A its amplitude, Q the length of a quarter, t the time since it
+/// began, a and b uniform in 0 .. 1 and the sign s drawn for each quarter and axis: it starts at 0, stays within A, and
+/// as a rule turns back. @source Jannsen2024
 AttitudeTrend thermo_elastic_drift(const SatelliteSettings& satellite, const SimulationSettings& simulation,
                                    const RandomStream& stream);
 

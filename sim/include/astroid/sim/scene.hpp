@@ -26,14 +26,14 @@ namespace astroid {
 /// A star on the detector or close enough to spill onto it.
 struct SceneStar {
   std::string id;
-  SkyPosition sky;          ///< NaN for a pixel catalogue
-  PixelPosition position;   ///< px, at the nominal pointing, rounded to 2^-24 px
-  Magnitude magnitude;      ///< in the zero point's passband
-  double electrons = 0.0;   ///< per exposure
-  AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
+  SkyPosition sky;                ///< NaN for a pixel catalogue
+  PixelPosition position;         ///< px, at the nominal pointing, rounded to 2^-24 px
+  Magnitude magnitude;            ///< in the zero point's passband
+  double electrons = 0.0;         ///< per exposure
+  AttitudeJacobian motion;        ///< px per arcsec of yaw, pitch and roll
   AberrationJacobian aberration;  ///< px per velocity of the spacecraft; zero where the mission leaves it out
-  int variability = -1;     ///< index into Scene::variables(); -1: constant
-  bool is_target = false;   ///< brighter than the target limit and on the computed pixels
+  int variability = -1;           ///< index into Scene::variables(); -1: constant
+  bool is_target = false;         ///< brighter than the target limit and on the computed pixels
 };
 
 /// What moves the line of sight.
