@@ -86,7 +86,7 @@ JitterSpectrum read_jitter_spectrum(const std::string& path) {
   }
   if (problems.empty() && frequency.size() < 2)
     problems.push_back({.file = path,
-                        .parameter = "Satellite/Jitter/PSD",
+                        .parameter = "Satellite/Jitter/File",
                         .expected = "at least two frequencies",
                         .message = fmt::format("the file has {}", frequency.size())});
   if (!problems.empty()) throw InputError(std::move(problems));
