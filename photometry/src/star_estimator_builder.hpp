@@ -56,6 +56,8 @@ class StarEstimatorBuilder {
   /// Fills annulus_, and found_ with its pixels.
   void choose_annulus(const FieldStar& star, const Rectangle& window, const StarEstimator& estimator);
   void add_local_background(double weight_sum, StarEstimator& estimator);
+  /// Noise that the pixels of a column or row share (pattern_noise.cpp).
+  void add_pattern_noise(const Rectangle& window, StarEstimator& estimator);
   // Of PSF weights (psf_estimator.cpp).
   void light_of_each(std::size_t star, const Rectangle& window, std::span<const std::size_t> neighbours);
   bool choose_psf_weights(const FieldStar& star, const Rectangle& window, const StarEstimator& estimator);
