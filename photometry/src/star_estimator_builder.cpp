@@ -344,7 +344,8 @@ void StarEstimatorBuilder::add_local_background(double weight_sum, StarEstimator
   estimator.offset += -weight_sum * annulus_.star_light / count;
   estimator.budget.var_background_estimate =
       (weight_sum / count) * (weight_sum / count) *
-      (count * model_.noise.variance() + model_.noise.factors(annulus_.star_light / count).photon * annulus_.star_light);
+      (count * model_.noise.variance() +
+       model_.noise.factors(annulus_.star_light / count).photon * annulus_.star_light);
 }
 
 void StarEstimatorBuilder::differentiate(std::size_t star, const Rectangle& box,

@@ -8,12 +8,13 @@
 #include <map>
 #include <utility>
 
-#include "astroid/core/digitise.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
 #include "effects/jitter_model.hpp"
 #include "psf_sensitivity.hpp"
+#include "reference_pixels.hpp"
 
 namespace astroid {
 
@@ -33,6 +34,8 @@ std::shared_ptr<const AttitudeModel> make_attitude(const Mission& mission) {
                                      make_stream(mission.simulation.seed, JitterModelEffect::kSpec.id, 0, 0));
     case JitterModel::kFile:
       return make_file_attitude(mission.satellite.jitter.file, mission.simulation);
+    case JitterModel::kSpectrum:
+      break;  // no configuration says so yet
   }
   throw BugError("unknown jitter model");
 }
@@ -179,7 +182,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
         .expected = "targets on the detector",
         .message =
             fmt::format("none of the {} stars is a target, so there is no window to compute", catalogue.stars.size())});
-  layout_ = std::make_shared<const PixelLayout>(std::move(regions));
+  std::vector<Rectangle> reference = reference_regions(regions, detector(), ccd.reference);
+  layout_ = std::make_shared<const PixelLayout>(std::move(regions), reference);
 
   SceneSummary& s = summary_;
   s.mission = &mission_;
@@ -188,9 +192,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.cameras = mission_.telescope.cameras;
   s.exposures_per_bin = std::max(1.0, std::floor(mission_.analysis.bin / mission_.simulation.cycle));
   s.background = (mission_.field.sky_background + ccd.dark_current).value() * exposure;
-  const double readout = ccd.readout_noise.value();
-  const double quantisation = ccd.gain.value() / kSqrt12;
-  s.pixel_noise_variance = s.background + readout * readout + quantisation * quantisation;
+  s.pixel_noise_variance = expected_pixel_noise(mission_).variance();
   const double radius = mission_.photometry.aperture_radius.value();
   const double side = mission_.photometry.mask_window;
   s.aperture_pixels = mission_.photometry.method == PhotometryMethod::kAperture ? kPi * radius * radius : side * side;

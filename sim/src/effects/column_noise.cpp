@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/sim/scene.hpp"
 #include "effects/need.hpp"

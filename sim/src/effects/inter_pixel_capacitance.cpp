@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/plane_kernels.hpp"
 #include "astroid/sim/inter_pixel_capacitance.hpp"
 #include "astroid/sim/scene.hpp"
@@ -18,11 +19,12 @@ EffectNeed InterPixelCapacitance::is_needed(const SceneSummary& scene) const {
   // At most what leaves every pixel leaves an aperture; the share is the same for every star.
   const double bias = leaving * scene.brightest_target_electrons;
   const double allowed = scene.flux_tolerance(scene.brightest_target_electrons);
-  return {bias > allowed,
-          fmt::format("{:.3g} % of a pixel's signal appears in its neighbours: up to {:.4g} e- of the brightest target, "
-                      "whose tolerance is {:.3g} e-",
-                      100.0 * leaving, bias, allowed),
-          bias, 2.0 * leaving};
+  return {
+      bias > allowed,
+      fmt::format("{:.3g} % of a pixel's signal appears in its neighbours: up to {:.4g} e- of the brightest target, "
+                  "whose tolerance is {:.3g} e-",
+                  100.0 * leaving, bias, allowed),
+      bias, 2.0 * leaving};
 }
 
 void InterPixelCapacitance::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {

@@ -1,7 +1,5 @@
 #include "effects/pixel_gain.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 
 #include "astroid/core/plane_kernels.hpp"
@@ -12,13 +10,14 @@
 namespace astroid {
 
 EffectNeed PixelGain::is_needed(const SceneSummary& scene) const {
-  return response_need(scene, scene.mission->cmos.gain_rms, "gain", "Gain/Spread");
+  return response_need(scene, scene.mission->cmos.gain_rms, "all pixels have the same gain (spread 0)");
 }
 
 void PixelGain::prepare(CameraState& camera, const PrepareContext& context) const {
   const double rms = context.scene.mission().cmos.gain_rms;
   camera.cmos.gain = Plane<float, unit::Relative>(camera.layout);
-  draw_fixed_pattern(context.stream, camera.cmos.gain, [&](double normal) { return std::max(0.0, 1.0 + rms * normal); });
+  draw_fixed_pattern(context.stream, camera.cmos.gain,
+                     [&](double normal) { return std::max(0.0, 1.0 + rms * normal); });
 }
 
 void PixelGain::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {

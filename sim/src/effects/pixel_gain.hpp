@@ -5,8 +5,8 @@
 
 namespace astroid {
 
-/// Multiplies what is read of each pixel by its fixed gain, mean 1, Gaussian with the stated rms, never below 0: each pixel
-/// has an amplifier of its own. Addressed by detector pixel.
+/// Multiplies what is read of each pixel by its fixed gain, mean 1, Gaussian with the stated rms, never below 0: each
+/// pixel has an amplifier of its own. Addressed by detector pixel.
 class PixelGain final : public Effect {
  public:
   static constexpr EffectSpec kSpec{.name = "pixel-gain",

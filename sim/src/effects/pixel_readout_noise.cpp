@@ -2,6 +2,7 @@
 
 #include <vector>
 
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/sim/scene.hpp"
 #include "effects/need.hpp"
@@ -25,8 +26,8 @@ void PixelReadoutNoise::prepare(CameraState& camera, const PrepareContext& conte
   camera.cmos.readout_noise = Plane<float, unit::Relative>(camera.layout);
   // The mean square of exp(s n - s²) is exp(-2 s²) exp(2 s²) = 1.
   draw_fixed_pattern(
-      context.stream, camera.cmos.readout_noise,
-      [&](double normal) { return det::exp(spread * (normal - spread)); }, kPatternDraw);
+      context.stream, camera.cmos.readout_noise, [&](double normal) { return det::exp(spread * (normal - spread)); },
+      kPatternDraw);
 }
 
 void PixelReadoutNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
@@ -39,8 +40,7 @@ void PixelReadoutNoise::apply(ExposureState& state, const EffectContext& context
     add_pixel_normals(context.stream, places, rms, analog);
     return;
   }
-  const std::span<const float> factor =
-      context.camera.cmos.readout_noise.pixels().subspan(strip.begin, strip.size());
+  const std::span<const float> factor = context.camera.cmos.readout_noise.pixels().subspan(strip.begin, strip.size());
   state.normals.resize(strip.size());
   pixel_normals(context.stream, places, state.normals);
   for (std::size_t i = 0; i < analog.size(); ++i)

@@ -5,9 +5,9 @@
 
 namespace astroid {
 
-/// Adds normal noise to each read. The rms differs from pixel to pixel by a fixed log-normal factor whose root mean square
-/// is 1: the stated readout noise is that of all pixels together. The draws of a pixel are those of the CCD's readout
-/// noise.
+/// Adds normal noise to each read. The rms differs from pixel to pixel by a fixed log-normal factor whose root mean
+/// square is 1: the stated readout noise is that of all pixels together. The draws of a pixel are those of the CCD's
+/// readout noise.
 class PixelReadoutNoise final : public Effect {
  public:
   static constexpr EffectSpec kSpec{.name = "readout-noise",

@@ -5,8 +5,8 @@
 
 namespace astroid {
 
-/// Replaces the last read by the counts that the fit of the ramp gives for the whole exposure, above the bias, rounded: the
-/// fit is made on board from digitised reads.
+/// Replaces the last read by the counts that the fit of the ramp gives for the whole exposure, above the bias, rounded:
+/// the fit is made on board from digitised reads.
 class RampFitEffect final : public Effect {
  public:
   static constexpr EffectSpec kSpec{.name = "ramp-fit",

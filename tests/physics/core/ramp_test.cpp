@@ -68,8 +68,8 @@ TEST(RampWeights, AreGeneralisedLeastSquaresOnTheReads) {
         const std::vector<long double> reads = read_weights(n, m, phi);
         for (int i = 0; i <= m; ++i) {
           // Read i ends increment i and begins increment i + 1.
-          const double got = (i > 0 ? w[static_cast<std::size_t>(i) - 1] : 0.0) -
-                             (i < m ? w[static_cast<std::size_t>(i)] : 0.0);
+          const double got =
+              (i > 0 ? w[static_cast<std::size_t>(i) - 1] : 0.0) - (i < m ? w[static_cast<std::size_t>(i)] : 0.0);
           const auto want = static_cast<double>(reads[static_cast<std::size_t>(i)]);
           worst = std::max(worst, std::abs(got - want) / static_cast<double>(n));
         }

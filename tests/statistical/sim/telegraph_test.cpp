@@ -14,7 +14,8 @@ const RandomStream kStream = make_stream(11, StreamId{99}, 1, 0);
 
 std::vector<int> states(const TelegraphProcess& process, int x, std::uint32_t from, std::uint32_t steps) {
   std::vector<int> out;
-  for (std::uint32_t k = 0; k < steps; ++k) out.push_back(telegraph_is_high(kStream, {x, 3}, process, from + k) ? 1 : 0);
+  for (std::uint32_t k = 0; k < steps; ++k)
+    out.push_back(telegraph_is_high(kStream, {x, 3}, process, from + k) ? 1 : 0);
   return out;
 }
 

@@ -29,6 +29,20 @@ struct RampPlanes {
   StripPlane<float, unit::Adu> previous;
   StripPlane<double, unit::Adu> carried, numerator;
 
+  RampPlanes() = default;
+  RampPlanes(const std::shared_ptr<const PixelLayout>& layout, std::size_t longest_strip)
+      : level(layout, longest_strip),
+        used(layout, longest_strip),
+        previous(layout, longest_strip),
+        carried(layout, longest_strip),
+        numerator(layout, longest_strip) {}
+  void make_whole() {
+    level.make_whole();
+    used.make_whole();
+    previous.make_whole();
+    carried.make_whole();
+    numerator.make_whole();
+  }
   [[nodiscard]] RampPixels pixels(const Strip& strip) {
     return {.level = level.pixels(strip),
             .previous = previous.pixels(strip),

@@ -1,0 +1,44 @@
+#include "effect_table_builder.hpp"
+#include "effects/adc.hpp"
+#include "effects/bias.hpp"
+#include "effects/column_noise.hpp"
+#include "effects/dark_current.hpp"
+#include "effects/gain.hpp"
+#include "effects/inter_pixel_capacitance.hpp"
+#include "effects/jitter_file.hpp"
+#include "effects/jitter_model.hpp"
+#include "effects/photon_noise.hpp"
+#include "effects/pixel_gain.hpp"
+#include "effects/pixel_offset.hpp"
+#include "effects/pixel_readout_noise.hpp"
+#include "effects/pixel_saturation.hpp"
+#include "effects/prnu.hpp"
+#include "effects/ramp_fit.hpp"
+#include "effects/ramp_reads.hpp"
+#include "effects/reset_noise.hpp"
+#include "effects/sky.hpp"
+#include "effects/stars.hpp"
+#include "effects/telegraph_pixels.hpp"
+
+namespace astroid {
+
+namespace {
+
+// From PhotonNoise to RampReads: once for every read.
+using CmosTable = EffectTable<JitterModelEffect, JitterFileEffect,                                      // Pointing
+                              Stars,                                                                    // Optics
+                              Sky,                                                                      // Sky
+                              Prnu, DarkCurrent, TelegraphPixels,                                       // PixelMean
+                              PhotonNoise, PixelSaturation,                                             // PixelSample
+                              GainEffect, InterPixelCapacitance, PixelGain, ResetNoise,                 // Readout
+                              PixelReadoutNoise, ColumnNoise, BiasEffect, PixelOffset, Adc, RampReads,  //
+                              RampFitEffect>;
+
+}  // namespace
+
+const std::vector<std::unique_ptr<const Effect>>& cmos_effect_table() {
+  static const std::vector<std::unique_ptr<const Effect>> cmos = CmosTable::make();
+  return cmos;
+}
+
+}  // namespace astroid
