@@ -72,6 +72,18 @@ void check_detector(const Mission& m, Checker& checker) {
                   fmt::format("less than 2^ADCBits - 1 = {} ADU", std::ldexp(1.0, ccd.adc_bits) - 1.0));
 }
 
+void check_cmos(const Mission& m, Checker& checker) {
+  const CmosSettings& cmos = m.cmos;
+  const bool is_cmos = m.simulation.type == DetectorType::kCmos;
+  // Silence would let a mission run without what it says.
+  checker.require(is_cmos || cmos == CmosSettings{}, "Simulation/Type", "CMOS/Reads",
+                  "is not the detector that the section CMOS describes", "CMOS, or no section CMOS");
+  checker.require(4.0 * (cmos.coupling + cmos.corner_coupling) <= 0.5, "CMOS/Coupling/Side", "CMOS/Coupling/Corner",
+                  "leaves less than half of its signal to a pixel", "side and corner of at most 12.5 % together");
+  checker.require(cmos.telegraph_fraction == 0.0 || cmos.telegraph_current.value() > 0.0, "CMOS/Telegraph/Current",
+                  "CMOS/Telegraph/Fraction", "is 0, though pixels jump", "more than 0 e-/px/s");
+}
+
 void check_photometry(const Mission& m, Checker& checker) {
   const PhotometrySettings& photometry = m.photometry;
   checker.require(photometry.annulus_inner < photometry.annulus_outer, "Photometry/Annulus/Inner",
@@ -87,6 +99,7 @@ void check_together(const Mission& mission, Draft& draft) {
   Checker checker(draft);
   check_times(mission, checker);
   check_detector(mission, checker);
+  check_cmos(mission, checker);
   check_photometry(mission, checker);
   checker.require(mission.telescope.simulated_cameras <= mission.telescope.cameras, "Telescope/SimulatedCameras",
                   "Telescope/Cameras", "more than there are",

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/math.hpp"
@@ -45,6 +46,8 @@ PixelNoise expected_pixel_noise(const Mission& mission) {
   noise.ramp = ramp_noise(mission);
   noise.column = mission.cmos.column_noise.value();
   noise.row = mission.cmos.row_noise.value();
+  noise.side_coupling = mission.cmos.coupling;
+  noise.corner_coupling = mission.cmos.corner_coupling;
   // A single read has the charge of its reset; a fit takes differences, which have not.
   if (mission.cmos.reads <= 1) noise.readout = det::hypot(noise.readout, mission.cmos.reset_noise.value());
   return noise;
@@ -71,6 +74,16 @@ double saturation_electrons(const Mission& mission) {
 
 InterPixelCoupling pixel_coupling(const CmosSettings& cmos) {
   return {.side = cmos.coupling, .corner = cmos.corner_coupling};
+}
+
+std::shared_ptr<const PixelPsf> imaged_psf(const Mission& mission, std::shared_ptr<const PixelPsf> psf) {
+  const InterPixelCoupling coupling = pixel_coupling(mission.cmos);
+  if (!is_cmos(mission) || coupling.own() >= 1.0) return psf;
+  return make_coupled_psf(std::move(psf), coupling);
+}
+
+double pixel_response_rms(const Mission& mission) {
+  return is_cmos(mission) ? det::hypot(mission.ccd.prnu, mission.cmos.gain_rms) : mission.ccd.prnu;
 }
 
 }  // namespace astroid

@@ -1,4 +1,4 @@
-// Readout noise that the pixels of a column or of a row share: it does not average down within an aperture.
+// Noise that pixels have in common: photon noise of coupled neighbours, readout noise of a column or a row.
 #include <cmath>
 #include <cstddef>
 #include <map>
@@ -6,6 +6,27 @@
 #include "star_estimator_builder.hpp"
 
 namespace astroid::detail {
+
+const std::vector<double>& StarEstimatorBuilder::couple_weights(const Rectangle& window) {
+  const double side = model_.noise.side_coupling;
+  const double corner = model_.noise.corner_coupling;
+  if (side <= 0.0 && corner <= 0.0) return weights_;
+  coupled_weights_.assign(weights_.size(), 0.0);
+  const double own = 1.0 - 4.0 * (side + corner);
+  const auto weight = [&](int x, int y) {
+    if (x < 0 || y < 0 || x >= window.nx || y >= window.ny) return 0.0;
+    return weights_[static_cast<std::size_t>(y) * static_cast<std::size_t>(window.nx) + static_cast<std::size_t>(x)];
+  };
+  std::size_t i = 0;
+  for (int y = 0; y < window.ny; ++y) {
+    for (int x = 0; x < window.nx; ++x, ++i) {
+      const double sides = weight(x - 1, y) + weight(x + 1, y) + weight(x, y - 1) + weight(x, y + 1);
+      const double corners = weight(x - 1, y - 1) + weight(x + 1, y - 1) + weight(x - 1, y + 1) + weight(x + 1, y + 1);
+      coupled_weights_[i] = own * weight(x, y) + side * sides + corner * corners;
+    }
+  }
+  return coupled_weights_;
+}
 
 void StarEstimatorBuilder::add_pattern_noise(const Rectangle& window, StarEstimator& estimator) {
   const PixelNoise& noise = model_.noise;

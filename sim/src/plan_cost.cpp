@@ -1,6 +1,7 @@
 #include "plan_cost.hpp"
 
 #include <algorithm>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -20,6 +21,11 @@ struct PixelCost {
 constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},      {"dark-current", 0.4},
                                      {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
                                      {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
+/// The same of a CMOS detector, a read (bench: BM_CmosExposure).
+constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 2.0},
+                                    {"pixel-gain", 0.4},       {"reset-noise", 1.45},
+                                    {"column-noise", 0.4},     {"pixel-offset", 0.4},
+                                    {"ramp-reads", 2.0},       {"ramp-fit", 2.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
 constexpr double kRecall = 0.7;    ///< ns a pixel: it is read from where it is kept, if nothing moves
 constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
@@ -113,8 +119,11 @@ double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Sc
     return spec.name == "stars" && moves ? maps_seconds(plan.knobs.polynomial.terms.size(), pixels) : 0.0;
   }
   if (spec.name == "stars") return kNanosecond * stars_cost(plan, scene);
-  for (const PixelCost& cost : kPixelCosts)
-    if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels;
+  const double reads = spec.per_read ? plan.reads : 1;
+  for (const std::span<const PixelCost> costs :
+       {std::span<const PixelCost>(kPixelCosts), std::span<const PixelCost>(kReadCosts)})
+    for (const PixelCost& cost : costs)
+      if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * reads;
   return 0.0;
 }
 

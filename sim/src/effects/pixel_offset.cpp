@@ -15,12 +15,14 @@ EffectNeed PixelOffset::is_needed(const SceneSummary& scene) const {
   if (rms <= 0.0) return {false, "all pixels have the same offset (spread 0)", 0.0, 0.0};
   if (const auto harmless = common_to_reads(scene, rms, fmt::format("{:.4g} e- rms of fixed offsets", rms)))
     return *harmless;
-  const double bias = rms * det::sqrt(scene.aperture_pixels);
-  return {bias > scene.tightest_tolerance(),
-          fmt::format("fixed offsets of {:.4g} e- rms add {:.4g} e- rms to an aperture; the tightest flux tolerance is "
-                      "{:.3g} e-",
-                      rms, bias, scene.tightest_tolerance()),
-          bias, 0.0};
+  constexpr double kWorst = 3.0;  // sigma: of some hundred stars one has as much
+  const double bias = kWorst * rms * det::sqrt(scene.aperture_pixels);
+  return {
+      bias > scene.tightest_tolerance(),
+      fmt::format("fixed offsets of {:.4g} e- rms add up to {:.4g} e- to an aperture; the tightest flux tolerance is "
+                  "{:.3g} e-",
+                  rms, bias, scene.tightest_tolerance()),
+      bias, 0.0};
 }
 
 void PixelOffset::prepare(CameraState& camera, const PrepareContext& context) const {

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/pixel_noise.hpp"
@@ -27,6 +29,7 @@ EffectNeed RampFitEffect::is_needed(const SceneSummary& scene) const {
 
 void RampFitEffect::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const Mission& mission = context.scene.mission();
+  if (context.camera.cmos.ladder == nullptr) return;  // a single read is what it is
   const double top = adc_top(delivered_bits(mission));
   Frame& frame = state.computed();
   const std::span<std::uint8_t> flags = frame.flags.pixels().subspan(strip.begin, strip.size());

@@ -18,11 +18,13 @@ EffectNeed RampReads::is_needed(const SceneSummary& scene) const {
 
 void RampReads::prepare(CameraState& camera, const PrepareContext& context) const {
   const Mission& mission = context.scene.mission();
+  if (mission.cmos.reads <= 1) return;
   camera.cmos.ladder =
       std::make_shared<const RampLadder>(mission.cmos.ramp_fit, mission.cmos.reads, read_variance(mission));
 }
 
 void RampReads::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
+  if (context.camera.cmos.ladder == nullptr) return;  // a single read is what it is
   const RampLadder& ladder = *context.camera.cmos.ladder;
   if (state.read == 0) {
     const std::span<const double> expected = state.expectation(strip);

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "astroid/core/math.hpp"
 #include "astroid/sim/scene.hpp"
 #include "effects/pixel_pattern.hpp"
 
@@ -27,11 +28,15 @@ EffectNeed TelegraphPixels::is_needed(const SceneSummary& scene) const {
   const CmosSettings& cmos = scene.mission->cmos;
   const double jump = (cmos.telegraph_current * scene.mission->simulation.exposure_time).value();
   if (!(cmos.telegraph_fraction > 0.0 && jump > 0.0)) return {false, "no pixel jumps between two states", 0.0, 0.0};
-  // A star over such a pixel sees all of it.
-  return {jump > scene.tightest_tolerance(),
-          fmt::format("{:.3g} % of the pixels jump by {:.4g} e- per exposure; the tightest flux tolerance is {:.3g} e-",
-                      100.0 * cmos.telegraph_fraction, jump, scene.tightest_tolerance()),
-          jump, 0.0};
+  // A star over such a pixel sees all of it, and of several if there are many.
+  const double expected = cmos.telegraph_fraction * scene.aperture_pixels;
+  constexpr double kWorst = 3.0;  // sigma: of some hundred stars one has as many
+  const double bias = jump * std::max(1.0, expected + kWorst * det::sqrt(expected));
+  return {bias > scene.tightest_tolerance(),
+          fmt::format("{:.3g} % of the pixels jump by {:.4g} e- per exposure, up to {:.4g} e- in an aperture; the "
+                      "tightest flux tolerance is {:.3g} e-",
+                      100.0 * cmos.telegraph_fraction, jump, bias, scene.tightest_tolerance()),
+          bias, 0.0};
 }
 
 void TelegraphPixels::prepare(CameraState& camera, const PrepareContext& context) const {

@@ -1,6 +1,8 @@
 // What a detector makes of the electrons of an exposure, CCD or CMOS: noise of its reads, range of what it delivers.
 #pragma once
 
+#include <memory>
+
 #include "astroid/core/inter_pixel_coupling.hpp"
 #include "astroid/core/mission.hpp"
 #include "astroid/core/noise.hpp"
@@ -31,5 +33,12 @@ double saturation_electrons(const Mission& mission);
 
 /// Of a CMOS detector.
 InterPixelCoupling pixel_coupling(const CmosSettings& cmos);
+
+/// The PSF as images of the mission's detector show it, and as the ground measures it: `psf` itself, or spread by
+/// inter-pixel capacitance.
+std::shared_ptr<const PixelPsf> imaged_psf(const Mission& mission, std::shared_ptr<const PixelPsf> psf);
+
+/// Rms of the fixed response of the pixels, relative: their sensitivity and, of a CMOS detector, their gain.
+double pixel_response_rms(const Mission& mission);
 
 }  // namespace astroid

@@ -154,9 +154,6 @@ struct CmosSettings {
   double telegraph_fraction = 0.0;  ///< of the pixels
   ElectronsPerSecond telegraph_current{0.0};  ///< dark current that their high state has more than their low one
   Seconds telegraph_low{1000.0}, telegraph_high{1000.0};  ///< mean stay in each state
-  double persistence = 0.0;         ///< share of an exposure's charge that is left to the next ones
-  Seconds persistence_time{100.0};  ///< in which it decays
-  Seconds line_time{0.0};           ///< of the rolling shutter, from row to row; 0: global shutter
 
   friend bool operator==(const CmosSettings&, const CmosSettings&) = default;
 };
