@@ -26,7 +26,7 @@ std::vector<test::LabStar> field() {
 Mission quiet_mission() {
   Mission mission = test::bare_mission(kSide, kSide);
   mission.simulation.type = DetectorType::kCmos;
-  mission.ccd.gain = Gain(0.05);  // rounding below any tolerance
+  mission.ccd.gain = Gain(0.05);
   mission.ccd.bias = Adu(2000.0);
   return mission;
 }
@@ -61,22 +61,24 @@ void force(Plan& plan, const std::string& effect, bool runs) {
     if (e.effect->spec().name == effect) e.need.needed = runs;
 }
 
-/// Delivered electrons in 6 x 6 px around each star, without photon noise.
+/// Electrons before they are digitised in 6 x 6 px around each star: rounding would hide what is looked for.
 std::vector<double> fluxes(const Planned& p, const Plan& plan, std::int64_t exposure) {
   const Simulator simulator(p.scene, std::make_shared<const Plan>(plan), 0);
   ExposureState state = simulator.make_state();
-  simulator.simulate(exposure, state);
   const CcdSettings& ccd = p.scene->mission().ccd;
   std::vector<double> sums;
-  for (const SceneStar& star : p.scene->stars()) {
-    double sum = 0.0;
-    const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
-    const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
-    for (int y = y0; y < y0 + 6; ++y)
-      for (int x = x0; x < x0 + 6; ++x)
-        sum += (static_cast<double>(state.frame.pixels.view(0).at(x, y)) - ccd.bias.value()) * ccd.gain.value();
-    sums.push_back(sum);
-  }
+  simulator.simulate(exposure, state, [&](const EffectSpec& spec, const ExposureState& seen) {
+    if (spec.name != "adc") return;
+    const auto analog = seen.analog.whole().view(0);
+    for (const SceneStar& star : p.scene->stars()) {
+      double sum = 0.0;
+      const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
+      const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
+      for (int y = y0; y < y0 + 6; ++y)
+        for (int x = x0; x < x0 + 6; ++x) sum += (analog.at(x, y) - ccd.bias.value()) * ccd.gain.value();
+      sums.push_back(sum);
+    }
+  });
   return sums;
 }
 

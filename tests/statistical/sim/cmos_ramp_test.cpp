@@ -32,10 +32,10 @@ Mission flat_field(double level, int reads, RampFit fit) {
   return mission;
 }
 
-struct Run {
+struct FlatRun {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<Plan> plan;
-  explicit Run(const Mission& mission)
+  explicit FlatRun(const Mission& mission)
       : scene(std::make_shared<const Scene>(mission, test::lab_catalogue({{150.0, 150.0, 1e-9}}))),
         plan(std::make_shared<Plan>(make_plan(*scene))) {}
   void force(const std::string& effect) const {
@@ -92,7 +92,7 @@ TEST(CmosRamp, GivesTheFluxWithinItsPredictedError) {
     for (const double level : {1e-9, 20.0, 400.0, 6000.0, 75000.0}) {
       const Mission mission = flat_field(level, c.reads, c.fit);
       const double variance = expected_pixel_noise(mission).variance();
-      expect_law(Run(mission).exposure(3).first, level, variance, c.name);
+      expect_law(FlatRun(mission).exposure(3).first, level, variance, c.name);
     }
   }
 }
@@ -101,22 +101,22 @@ TEST(CmosRamp, OfOneReadIsAResetAndARead) {
   const Mission cmos = flat_field(900.0, 1, RampFit::kOptimal);
   Mission ccd = cmos;
   ccd.simulation.type = DetectorType::kCcd;
-  EXPECT_EQ(Run(cmos).exposure(2).first, Run(ccd).exposure(2).first);
+  EXPECT_EQ(FlatRun(cmos).exposure(2).first, FlatRun(ccd).exposure(2).first);
   // With the charge that the reset leaves.
   Mission noisy = cmos;
   noisy.cmos.reset_noise = Electrons(44.0);
-  EXPECT_TRUE(Run(noisy).plan->runs("reset-noise"));
-  expect_law(Run(noisy).exposure(2).first, 900.0, expected_pixel_noise(noisy).variance(), "one read");
+  EXPECT_TRUE(FlatRun(noisy).plan->runs("reset-noise"));
+  expect_law(FlatRun(noisy).exposure(2).first, 900.0, expected_pixel_noise(noisy).variance(), "one read");
 }
 
 TEST(CmosRamp, DoesNotHaveWhatAllReadsShare) {
   Mission mission = flat_field(900.0, 8, RampFit::kOptimal);
   mission.cmos.reset_noise = Electrons(44.0);
   mission.cmos.offset_rms = Adu(100.0);
-  const Run without(mission);
+  const FlatRun without(mission);
   EXPECT_FALSE(without.plan->runs("reset-noise"));
   EXPECT_FALSE(without.plan->runs("pixel-offset"));
-  const Run with(mission);
+  const FlatRun with(mission);
   with.force("reset-noise");
   with.force("pixel-offset");
   const std::vector<double> a = without.exposure(1).first;
@@ -140,12 +140,12 @@ TEST(CmosRamp, IsFittedToTheReadsBeforeTheFullWell) {
   for (const double usable : {1.5, 2.5, 4.5, 7.5}) {
     const double level = kFullWell * 8.0 / usable;
     Mission mission = flat_field(level, kReads, RampFit::kOptimal);
-    const auto [electrons, flags] = Run(mission).exposure(0);
+    const auto [electrons, flags] = FlatRun(mission).exposure(0);
     expect_law(electrons, level, expected_pixel_noise(mission).variance(), "short ramp");
     EXPECT_TRUE(std::ranges::all_of(flags, [](std::uint8_t f) { return f == pixel_flag::kShortRamp; }));
   }
   // Full before the second read: nothing to fit.
-  const auto [electrons, flags] = Run(flat_field(10.0 * kFullWell, kReads, RampFit::kOptimal)).exposure(0);
+  const auto [electrons, flags] = FlatRun(flat_field(10.0 * kFullWell, kReads, RampFit::kOptimal)).exposure(0);
   EXPECT_TRUE(std::ranges::all_of(flags, [](std::uint8_t f) {
     return (f & (pixel_flag::kFullWell | pixel_flag::kAdcSaturated)) != 0 && (f & pixel_flag::kShortRamp) == 0;
   }));
@@ -154,7 +154,7 @@ TEST(CmosRamp, IsFittedToTheReadsBeforeTheFullWell) {
 TEST(CmosRamp, KeepsTheNoiseOfUnequalPixels) {
   Mission mission = flat_field(1e-9, 6, RampFit::kOptimal);
   mission.cmos.noise_rms = 0.4;
-  const Run run(mission);
+  const FlatRun run(mission);
   // Over many exposures of each pixel: the mean of the variances is the stated one, their logarithm has the spread.
   constexpr int kExposures = 60;
   std::vector<double> sum(static_cast<std::size_t>(kSide * kSide));
@@ -190,7 +190,7 @@ TEST(CmosRamp, SharesNoiseInColumnsAndRows) {
   Mission mission = flat_field(1e-9, 4, RampFit::kLeastSquares);
   mission.cmos.column_noise = Electrons(6.0);
   mission.cmos.row_noise = Electrons(3.0);
-  const Run run(mission);
+  const FlatRun run(mission);
   const PixelNoise noise = expected_pixel_noise(mission);
   const double factor = noise.factors(0.0).readout;
   std::vector<double> columns;
