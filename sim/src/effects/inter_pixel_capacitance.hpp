@@ -5,7 +5,7 @@
 
 namespace astroid {
 
-/// What is read of a pixel follows its neighbours' charge a little (F51); charge itself stays where it is.
+/// What is read of a pixel follows its neighbours' charge a little (F91); charge itself stays where it is.
 class InterPixelCapacitance final : public Effect {
  public:
   static constexpr EffectSpec kSpec{.name = "inter-pixel-capacitance",

@@ -5,7 +5,7 @@
 
 namespace astroid {
 
-/// Keeps of each read what the fit needs of it (F50); weights are those for the charge that a pixel is expected to
+/// Keeps of each read what the fit needs of it (F90); weights are those for the charge that a pixel is expected to
 /// hold.
 class RampReads final : public Effect {
  public:

@@ -5,7 +5,7 @@
 
 namespace astroid {
 
-/// Adds dark current in the high state of pixels that jump between two states (F52), chosen once by detector pixel. The
+/// Adds dark current in the high state of pixels that jump between two states (F92), chosen once by detector pixel. The
 /// state holds for an exposure and is a pure function of its number.
 class TelegraphPixels final : public Effect {
  public:

@@ -121,7 +121,7 @@ TEST(CmosRamp, DoesNotHaveWhatAllReadsShare) {
   with.force("pixel-offset");
   const std::vector<double> a = without.exposure(1).first;
   const std::vector<double> b = with.exposure(1).first;
-  // Reads are rounded elsewhere, each by the quantisation noise of F50; nothing else changes.
+  // Reads are rounded elsewhere, each by the quantisation noise of F90; nothing else changes.
   std::vector<double> difference(a.size());
   std::ranges::transform(a, b, difference.begin(), std::minus<>());
   const double step = 1.92;

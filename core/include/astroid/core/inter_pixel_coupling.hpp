@@ -17,7 +17,7 @@ struct InterPixelCoupling {
 
 /// The PSF as seen in the images of a detector with inter-pixel capacitance: fractions spread over 3 x 3 pixels. What a
 /// ground segment measures from stars has it, so this is the PSF that it believes.
-/// @accuracy  exact away from the edge of the detector, where neighbours are missing. @source F51
+/// @accuracy  exact away from the edge of the detector, where neighbours are missing. @source F91
 std::shared_ptr<const PixelPsf> make_coupled_psf(std::shared_ptr<const PixelPsf> psf,
                                                  const InterPixelCoupling& coupling);
 

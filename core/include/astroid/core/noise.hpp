@@ -19,7 +19,7 @@ struct PixelNoise {
   RampNoise ramp{};           ///< how often the pixel is read; `readout` and `quantisation` are of one read
   double column = 0.0;        ///< e- rms of one read that all pixels of a column share; no part of variance()
   double row = 0.0;           ///< the same of a row
-  /// Share of a pixel's signal in each neighbour at its sides and corners (F51), which correlates photon noise.
+  /// Share of a pixel's signal in each neighbour at its sides and corners (F91), which correlates photon noise.
   double side_coupling = 0.0, corner_coupling = 0.0;
 
   /// Variance of a pixel without stars, e-².

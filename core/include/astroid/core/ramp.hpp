@@ -29,7 +29,7 @@ struct RampVariance {
 ///   z_i = d_i + c_i z_{i-1},   numerator += a_i z_i,   F = n numerator / information(m).
 /// What is common to all reads of a ramp (reset noise, offset of the pixel) is in no increment.
 /// @source Brandt2024 for the likelihood; differs: the prefix sums, and weights from the expected charge, not from the
-/// ramp itself, so that the fit is linear in the reads and unbiased. F50
+/// ramp itself, so that the fit is linear in the reads and unbiased. F90
 class RampWeights {
  public:
   /// @param intervals  n >= 1.  @param photons_per_read_noise  φ >= 0; 0: least squares, infinite: last minus first.
@@ -65,7 +65,7 @@ struct RampNoise {
   /// Of the electrons that a pixel delivers. @param electrons  expected in the exposure, e-.
   /// @param read_variance  of one read, e-²: readout and quantisation noise.
   /// @valid  a fitted pixel with at least one usable increment; for others the variance of the first is stated.
-  /// @source F50
+  /// @source F90
   [[nodiscard]] RampVariance variance(double electrons, double read_variance) const;
 };
 

@@ -13,7 +13,7 @@ namespace astroid {
 /// @accuracy  the sum of the signal is that of the charge to 1e-12 relative
 ///            (test: InterPixelCapacitance.ConservesCharge).
 /// @complexity O(pixels) (bench: BM_InterPixelCapacitance)  @rng none  @thread safe
-/// @source Moore2006 for the network; McCullough2008 for the 3 x 3 kernel. F51
+/// @source Moore2006 for the network; McCullough2008 for the 3 x 3 kernel. F91
 void couple_pixels(const ImageView<const double, unit::SampledElectrons>& charge, const InterPixelCoupling& coupling,
                    const ImageView<double, unit::SampledElectrons>& signal);
 

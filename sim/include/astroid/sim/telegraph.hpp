@@ -11,7 +11,7 @@ namespace astroid {
 ///
 /// At each step the pixel forgets its state with the probability `renewal` and is then high with the probability
 /// `high`; otherwise it stays. That is the chain with P(low → high) = renewal × high and P(high → low) = renewal ×
-/// (1 - high); its autocorrelation is (1 - renewal)^lag. @source Machlup1954; F52
+/// (1 - high); its autocorrelation is (1 - renewal)^lag. @source Machlup1954; F92
 struct TelegraphProcess {
   double renewal = 1.0;  ///< 0 … 1
   double high = 0.5;     ///< share of time in the high state
