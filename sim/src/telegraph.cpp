@@ -24,8 +24,9 @@ double draw(const RandomStream& stream, const TelegraphPixel& pixel, std::uint32
 
 }  // namespace
 
-TelegraphProcess TelegraphProcess::of_times(double low_s, double high_s, double step_s) {
-  return {.renewal = -det::expm1(-step_s * (1.0 / low_s + 1.0 / high_s)), .high = high_s / (low_s + high_s)};
+TelegraphProcess TelegraphProcess::of_times(const TelegraphStays& stays, double step) {
+  return {.renewal = -det::expm1(-step * (1.0 / stays.low + 1.0 / stays.high)),
+          .high = stays.high / (stays.low + stays.high)};
 }
 
 bool telegraph_is_high(const RandomStream& stream, const TelegraphPixel& pixel, const TelegraphProcess& process,

@@ -18,7 +18,7 @@ constexpr std::uint16_t kChoiceRead = 1;  // draws with read 0 are those of the 
 
 TelegraphProcess process_of(const Mission& mission) {
   const CmosSettings& cmos = mission.cmos;
-  return TelegraphProcess::of_times(cmos.telegraph_low.value(), cmos.telegraph_high.value(),
+  return TelegraphProcess::of_times({.low = cmos.telegraph_low.value(), .high = cmos.telegraph_high.value()},
                                     mission.simulation.cycle.value());
 }
 

@@ -40,7 +40,7 @@ Ratio noise_ratio(const std::filesystem::path& folder) {
   return ratio;
 }
 
-Ratio assess(const test::TemporaryFolder& folder, const std::string& name, std::vector<std::string> settings) {
+Ratio assess(const test::TemporaryFolder& folder, const std::string& name, const std::vector<std::string>& settings) {
   std::vector<std::string> arguments{
       "assess", "small.xml", "-o", name, "--set", "Simulation/Exposures=120", "--set", "Satellite/Jitter/model=none"};
   for (const std::string& setting : settings) {

@@ -55,7 +55,7 @@ TEST(Telegraph, HasTheTransitionsOfItsChain) {
 
 TEST(Telegraph, HasTheAutocorrelationOfItsTimes) {
   // Stays of 400 s and 100 s seen every 20 s: exp(-lag / 80 s).
-  const TelegraphProcess process = TelegraphProcess::of_times(400.0, 100.0, 20.0);
+  const TelegraphProcess process = TelegraphProcess::of_times({.low = 400.0, .high = 100.0}, 20.0);
   EXPECT_NEAR(process.renewal, 1.0 - std::exp(-20.0 / 80.0), 1e-15);
   EXPECT_NEAR(process.high, 0.2, 1e-15);
   constexpr int kPixels = 20000;
@@ -77,7 +77,7 @@ TEST(Telegraph, HasTheAutocorrelationOfItsTimes) {
 }
 
 TEST(Telegraph, IsAFunctionOfTheStepAlone) {
-  const TelegraphProcess process = TelegraphProcess::of_times(3000.0, 500.0, 25.0);
+  const TelegraphProcess process = TelegraphProcess::of_times({.low = 3000.0, .high = 500.0}, 25.0);
   const std::vector<int> whole = states(process, 5, 0, 2000);
   const std::vector<int> second_half = states(process, 5, 1000, 1000);
   EXPECT_TRUE(std::equal(second_half.begin(), second_half.end(), whole.begin() + 1000));

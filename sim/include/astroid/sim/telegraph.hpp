@@ -7,6 +7,11 @@
 
 namespace astroid {
 
+/// Mean time that a pixel stays in each state, s.
+struct TelegraphStays {
+  double low = 1.0, high = 1.0;
+};
+
 /// A two-state Markov chain in steps, started long ago.
 ///
 /// At each step the pixel forgets its state with the probability `renewal` and is then high with the probability
@@ -16,8 +21,8 @@ struct TelegraphProcess {
   double renewal = 1.0;  ///< 0 … 1
   double high = 0.5;     ///< share of time in the high state
 
-  /// Of a process in continuous time with mean stays τ_low and τ_high, seen every `step` seconds: exact for any step.
-  static TelegraphProcess of_times(double low_s, double high_s, double step_s);
+  /// Of a process in continuous time that is seen every `step` seconds: exact for any step.
+  static TelegraphProcess of_times(const TelegraphStays& stays, double step);
 };
 
 /// A pixel's chain.
