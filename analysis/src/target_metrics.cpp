@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/photometric.hpp"
 
 namespace astroid {
@@ -28,7 +29,7 @@ RunSetup run_setup(const Mission& mission) {
   setup.exposures_per_bin = mission.analysis.bin / mission.simulation.cycle;
   setup.cameras = mission.telescope.cameras;
   setup.simulated_cameras = mission.telescope.simulated_cameras;
-  setup.prnu = mission.ccd.prnu;
+  setup.prnu = pixel_response_rms(mission);
   setup.uncontaminated_spr = mission.analysis.uncontaminated_spr;
   return setup;
 }

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "astroid/catalogues/passbands.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/ecliptic.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
@@ -136,6 +137,10 @@ ElectronsPerSecond mean_background_rate(const Mission& mission) {
   const ElectronsPerSecond sky = sky_rate(mission, constant ? ElectronsPerSecond(0.0) : rate_of_one_s10(mission), axis,
                                           middle_of_run(mission.simulation));
   return sky + mission.field.stray_light.level;
+}
+
+PixelNoise expected_pixel_noise(const Mission& mission) {
+  return expected_pixel_noise(mission, mean_background_rate(mission));
 }
 
 }  // namespace astroid

@@ -72,6 +72,25 @@ void check_detector(const Mission& m, Checker& checker) {
                   fmt::format("less than 2^ADCBits - 1 = {} ADU", std::ldexp(1.0, ccd.adc_bits) - 1.0));
 }
 
+void check_cmos(const Mission& m, Checker& checker) {
+  const CmosSettings& cmos = m.cmos;
+  const bool is_cmos = m.simulation.type == DetectorType::kCmos;
+  // Silence would let a mission run without what it says.
+  checker.require(is_cmos || cmos == CmosSettings{}, "Simulation/Type", "CMOS/Reads",
+                  "is not the detector that the section CMOS describes", "CMOS, or no section CMOS");
+  checker.require(4.0 * (cmos.coupling + cmos.corner_coupling) <= 0.5, "CMOS/Coupling/Side", "CMOS/Coupling/Corner",
+                  "leaves less than half of its signal to a pixel", "side and corner of at most 12.5 % together");
+  // A read that is cut at 0 counts as saturated, and then there is no ramp to fit.
+  constexpr double kSigmas = 6.0;
+  const double noise = std::hypot(m.ccd.readout_noise.value(), cmos.reset_noise.value()) / m.ccd.gain.value();
+  const double lowest = std::ceil(kSigmas * std::hypot(noise, cmos.offset_rms.value()));
+  checker.require(!is_cmos || cmos.reads <= 1 || m.ccd.bias.value() >= lowest, "CCD/Bias", "CMOS/Reads",
+                  "lets the noise of reads fall below 0 ADU",
+                  fmt::format("at least {:g} ADU, 6 sigma of readout noise, reset noise and offsets", lowest));
+  checker.require(cmos.telegraph_fraction == 0.0 || cmos.telegraph_current.value() > 0.0, "CMOS/Telegraph/Current",
+                  "CMOS/Telegraph/Fraction", "is 0, though pixels jump", "more than 0 e-/px/s");
+}
+
 void check_photometry(const Mission& m, Checker& checker) {
   const PhotometrySettings& photometry = m.photometry;
   checker.require(photometry.annulus_inner < photometry.annulus_outer, "Photometry/Annulus/Inner",
@@ -87,6 +106,7 @@ void check_together(const Mission& mission, Draft& draft) {
   Checker checker(draft);
   check_times(mission, checker);
   check_detector(mission, checker);
+  check_cmos(mission, checker);
   check_photometry(mission, checker);
   checker.require(mission.telescope.simulated_cameras <= mission.telescope.cameras, "Telescope/SimulatedCameras",
                   "Telescope/Cameras", "more than there are",

@@ -99,6 +99,7 @@ std::vector<Parameter> psf_parameters();
 std::vector<Parameter> stellar_field_parameters();
 std::vector<Parameter> sky_parameters();
 std::vector<Parameter> ccd_parameters();
+std::vector<Parameter> cmos_parameters();
 std::vector<Parameter> photometry_parameters();
 std::vector<Parameter> analysis_parameters();
 std::vector<Parameter> output_parameters();

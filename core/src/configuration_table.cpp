@@ -28,6 +28,9 @@ constexpr std::array kSections = {
     Section{"CCD/OpticalAxis",
             "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
     Section{"CCD/SubField", "The part of the detector that is simulated; without this element all of it."},
+    Section{"CMOS", "What only a CMOS detector has; what both kinds have stands in CCD."},
+    Section{"CMOS/Coupling", "Inter-pixel capacitance."},
+    Section{"CMOS/Telegraph", "Random telegraph signal of the dark current."},
     Section{"Photometry", "How fluxes are measured."},
     Section{"Photometry/Annulus", "Ring around a star in which the local background is measured."},
     Section{"Photometry/Calibration", "Which corrections are applied to the images before they are measured."},
@@ -38,8 +41,8 @@ constexpr std::array kSections = {
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part : {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters,
-                    psf_parameters, stellar_field_parameters, sky_parameters, ccd_parameters, photometry_parameters,
-                    analysis_parameters, output_parameters}) {
+                    psf_parameters, stellar_field_parameters, sky_parameters, ccd_parameters, cmos_parameters,
+                    photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

@@ -1,6 +1,4 @@
-#include <array>
-
-#include "astroid/sim/effect_table.hpp"
+#include "effect_table_builder.hpp"
 #include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
@@ -25,36 +23,19 @@ namespace astroid {
 
 namespace {
 
-/// The order of the run is the order of this list.
-template <class... Effects>
-struct Table {
-  static constexpr std::array<EffectSpec, sizeof...(Effects)> kSpecs{Effects::kSpec...};
-  static_assert(is_consistent(kSpecs),
-                "an effect reads a plane that nothing wrote, a stream number is used twice, or a level steps back");
-  static std::vector<std::unique_ptr<const Effect>> make() {
-    std::vector<std::unique_ptr<const Effect>> effects;
-    (effects.push_back(std::make_unique<const Effects>()), ...);
-    return effects;
-  }
-};
-
 using CcdTable =
-    Table<ProperMotionEffect,                                                                    // Catalogue
-          JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-          Stars, VariableStars,                                                                  // Optics
-          Sky, ZodiacalSky, StrayLight,                                                          // Sky
-          Prnu, DarkCurrent,                                                                     // PixelMean
-          PhotonNoise, FullWell,                                                                 // PixelSample
-          ReadoutNoise, GainEffect, BiasEffect, Adc>;                                            // Readout
+    EffectTable<ProperMotionEffect,                                                                    // Catalogue
+                JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
+                Stars, VariableStars,                                                                  // Optics
+                Sky, ZodiacalSky, StrayLight,                                                          // Sky
+                Prnu, DarkCurrent,                                                                     // PixelMean
+                PhotonNoise, FullWell,                                                                 // PixelSample
+                ReadoutNoise, GainEffect, BiasEffect, Adc>;                                            // Readout
 
 }  // namespace
 
 const std::vector<std::unique_ptr<const Effect>>& effect_table(DetectorType type) {
-  if (type != DetectorType::kCcd)
-    throw InputError(Problem{.parameter = "Simulation/Type",
-                             .value = "CMOS",
-                             .expected = "CCD",
-                             .message = "only CCD detectors can be simulated"});
+  if (type == DetectorType::kCmos) return cmos_effect_table();
   static const std::vector<std::unique_ptr<const Effect>> ccd = CcdTable::make();
   return ccd;
 }

@@ -1,6 +1,7 @@
 #include "plan_cost.hpp"
 
 #include <algorithm>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -21,6 +22,11 @@ constexpr PixelCost kPixelCosts[] = {
     {"sky", 0.1},          {"zodiacal-sky", 0.6},  {"stray-light", 0.6}, {"prnu", 0.4},
     {"dark-current", 0.4}, {"photon-noise", 2.55}, {"full-well", 0.3},   {"readout-noise", 1.45},
     {"gain", 0.15},        {"bias", 0.1},          {"adc", 0.5}};
+/// The same of a CMOS detector, a read (bench: BM_CmosExposure).
+constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 2.0},
+                                    {"pixel-gain", 0.4},       {"reset-noise", 1.45},
+                                    {"column-noise", 0.4},     {"pixel-offset", 0.4},
+                                    {"ramp-reads", 2.0},       {"ramp-fit", 2.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
 constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
 /// Ns a pixel of one map, where the maps fit into a share of the last cache and where they come from memory.
@@ -92,8 +98,11 @@ double nominal_seconds(const PlannedEffect& effect, const Plan& plan, const Scen
     return kNanosecond * (kClear * pixels + stars_cost(plan, scene));
   }
   if (recalls(plan) && spec.role != ImageRole::kVaryingLight && spec.level <= EffectLevel::kPixelMean) return 0.0;
-  for (const PixelCost& cost : kPixelCosts)
-    if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * (spec.per_read ? plan.reads : 1);
+  const double reads = spec.per_read ? plan.reads : 1;
+  for (const std::span<const PixelCost> costs :
+       {std::span<const PixelCost>(kPixelCosts), std::span<const PixelCost>(kReadCosts)})
+    for (const PixelCost& cost : costs)
+      if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * reads;
   return 0.0;
 }
 
@@ -139,7 +148,9 @@ void predict_times(Plan& plan, const Scene& scene, const CostFactors& costs) {
 double predicted_memory(const Plan& plan) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
   if (plan.runs("full-well")) bytes_per_pixel += sizeof(double);  // drawn electrons, column by column
-  constexpr double kStripPlanes = 3.0;                            // expected and drawn electrons, ADU
+  if (plan.reads > 1 && plan.runs("inter-pixel-capacitance"))     // planes and ramps of all pixels from read to read
+    bytes_per_pixel += 5.0 * sizeof(double) + sizeof(float) + 2.0 * sizeof(std::uint8_t);
+  constexpr double kStripPlanes = 3.0;  // expected and drawn electrons, ADU
   return bytes_per_pixel * static_cast<double>(plan.layout->size()) +
          kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);
 }

@@ -12,6 +12,7 @@
 
 #include "astroid/catalogues/proper_motion.hpp"
 #include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
@@ -257,9 +258,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   const ElectronsPerSecond from_sky = mean_background_rate(mission_);
   s.sky = (from_sky - mission_.field.stray_light.level).value() * exposure;
   s.background = (from_sky + ccd.dark_current).value() * exposure;
-  const double readout = ccd.readout_noise.value();
-  const double quantisation = ccd.gain.value() / kSqrt12;
-  s.pixel_noise_variance = s.background + readout * readout + quantisation * quantisation;
+  s.pixel_noise_variance = expected_pixel_noise(mission_).variance();
   const double radius = mission_.photometry.aperture_radius.value();
   const double side = mission_.photometry.mask_window;
   s.aperture_pixels = mission_.photometry.method == PhotometryMethod::kAperture ? kPi * radius * radius : side * side;

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "astroid/core/calendar.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/fits_writer.hpp"
 #include "folders.hpp"
 
@@ -52,7 +53,7 @@ std::vector<FitsCard> image_cards(const Scene& scene, const FrameHeader& header)
 }
 
 FitsNumber count_format(const Scene& scene) {
-  return scene.mission().ccd.adc_bits <= kSixteenBits ? FitsNumber::kUnsigned16 : FitsNumber::kInt32;
+  return delivered_bits(scene.mission()) <= kSixteenBits ? FitsNumber::kUnsigned16 : FitsNumber::kInt32;
 }
 
 /// Where a sub-image lies: its WCS and the detector pixel of its first one.
@@ -233,6 +234,7 @@ StepObserver ImageFiles::step_writer(int camera, std::int64_t exposure) const {
   return [this, folder, stem = file_name(camera, exposure), number = 0](const EffectSpec& effect,
                                                                         const ExposureState& state) mutable {
     if (effect.level == EffectLevel::kPointing) return;  // no map changes
+    // Of several reads the steps between are there once for each.
     FitsWriter fits(folder / fmt::format("{}_{:02}_{}.fits", stem, ++number, effect.name));
     write_step(fits, effect, state, scene_, history_);
     fits.commit(Durability::kWithFolder);

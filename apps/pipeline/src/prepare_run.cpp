@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "astroid/analysis/budget.hpp"
+#include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/pipeline/calibrate.hpp"
 #include "astroid/pipeline/field.hpp"
 #include "astroid/pipeline/ground.hpp"
@@ -43,12 +45,17 @@ double faintest_of(const Scene& scene, std::span<const std::size_t> stars) {
 
 }  // namespace
 
+std::shared_ptr<const PixelPsf> psf_in_images(const Scene& scene) {
+  return imaged_psf(scene.mission(), {std::shared_ptr<const void>(), &scene.psf()});
+}
+
 Ground perfect_ground(const Scene& scene) {
   Ground ground;
   ground.stars = field_stars(scene);
   ground.model.stars = ground.stars;
   ground.model.targets = scene.targets();
-  ground.model.psf = &scene.psf();
+  ground.psf = psf_in_images(scene);
+  ground.model.psf = ground.psf.get();
   ground.model.noise = expected_pixel_noise(scene.mission());
   // What estimators have in common is decided by the targets of the full frame, whichever pixels are computed: the same
   // weights for a star in a window, a sub-field and the full frame.

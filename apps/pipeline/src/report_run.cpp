@@ -10,9 +10,11 @@
 #include "astroid/analysis/contamination.hpp"
 #include "astroid/analysis/target_metrics.hpp"
 #include "astroid/analysis/verdict.hpp"
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/pipeline/field.hpp"
+#include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run_record.hpp"
 #include "astroid/reports/report.hpp"
@@ -79,7 +81,7 @@ std::vector<BudgetRow> budget_rows(const Scene& scene) {
   }
   std::vector<double> magnitudes;
   for (double m = std::floor(2.0 * bright) / 2.0; m <= faint + 0.5; m += 0.5) magnitudes.push_back(m);
-  return analytic_budget(scene.mission(), scene.psf(), magnitudes);
+  return analytic_budget(scene.mission(), *psf_in_images(scene), magnitudes);
 }
 
 /// Light curves of clean targets spread over the magnitudes, read back from the file.

@@ -34,6 +34,16 @@ test::EffectScene scene(const char* effect, const std::function<void(Mission&)>&
   return {.effect = effect, .mission = mission, .switch_off = off};
 }
 
+/// The same of a CMOS detector that is read five times in an exposure.
+test::EffectScene cmos_scene(const char* effect, const std::function<void(Mission&)>& on,
+                             const std::function<void(Mission&)>& off) {
+  Mission mission = quiet();
+  mission.simulation.type = DetectorType::kCmos;
+  mission.cmos.reads = 5;
+  if (on) on(mission);
+  return {.effect = effect, .mission = mission, .switch_off = off};
+}
+
 std::string attitude_file() {
   static const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "attitude.csv").string();
@@ -125,6 +135,51 @@ std::vector<test::EffectScene> scenes() {
       scene("gain", {}, {}),
       scene("bias", {}, [](Mission& m) { m.ccd.bias = Adu(0.0); }),
       scene("adc", {}, {}),
+      cmos_scene(
+          "telegraph-pixels",
+          [](Mission& m) {
+            m.cmos.telegraph_fraction = 0.02;
+            m.cmos.telegraph_current = ElectronsPerSecond(40.0);
+            m.cmos.telegraph_low = m.cmos.telegraph_high = Seconds(80.0);
+          },
+          [](Mission& m) { m.cmos.telegraph_fraction = 0.0; }),
+      cmos_scene(
+          "pixel-saturation", [](Mission& m) { m.ccd.full_well = Electrons(100000.0); },
+          [](Mission& m) { m.ccd.full_well = Electrons(1e12); }),
+      cmos_scene(
+          "inter-pixel-capacitance",
+          [](Mission& m) {
+            m.cmos.coupling = 0.01;
+            m.cmos.corner_coupling = 0.001;
+          },
+          [](Mission& m) { m.cmos.coupling = m.cmos.corner_coupling = 0.0; }),
+      cmos_scene(
+          "pixel-gain", [](Mission& m) { m.cmos.gain_rms = 0.01; }, [](Mission& m) { m.cmos.gain_rms = 0.0; }),
+      cmos_scene(
+          "reset-noise",
+          [](Mission& m) {
+            m.cmos.reads = 1;
+            m.cmos.reset_noise = Electrons(40.0);
+          },
+          [](Mission& m) { m.cmos.reset_noise = Electrons(0.0); }),
+      cmos_scene(
+          "column-noise", [](Mission& m) { m.cmos.column_noise = m.cmos.row_noise = Electrons(9.0); },
+          [](Mission& m) { m.cmos.column_noise = m.cmos.row_noise = Electrons(0.0); }),
+      cmos_scene(
+          "pixel-offset",
+          [](Mission& m) {
+            m.cmos.reads = 1;
+            m.cmos.offset_rms = Adu(9.0);
+          },
+          [](Mission& m) { m.cmos.offset_rms = Adu(0.0); }),
+      cmos_scene("ramp-reads", {}, [](Mission& m) { m.cmos.reads = 1; }),
+      cmos_scene("ramp-fit", {}, [](Mission& m) { m.cmos.reads = 1; }),
+      // What both kinds have, read several times.
+      cmos_scene("photon-noise", {}, {}),
+      cmos_scene(
+          "readout-noise", [](Mission& m) { m.cmos.noise_rms = 0.3; },
+          [](Mission& m) { m.ccd.readout_noise = Electrons(0.0); }),
+      cmos_scene("adc", {}, {}),
   };
 }
 
@@ -138,6 +193,7 @@ INSTANTIATE_TEST_SUITE_P(Effects, EffectContract, testing::ValuesIn(scenes()),
                          [](const testing::TestParamInfo<test::EffectScene>& parameter) {
                            std::string name = parameter.param.effect;
                            std::erase(name, '-');
+                           if (parameter.param.mission.simulation.type == DetectorType::kCmos) name += "OfCmos";
                            return name;
                          });
 
@@ -145,7 +201,7 @@ TEST(EffectContract, CoversEveryEffectOfEveryDetector) {
   std::set<std::string> covered;
   for (const test::EffectScene& s : scenes()) covered.insert(s.effect);
   covered.insert("proper-motion");  // touches no plane: its work is done when the scene is built
-  for (const DetectorType type : {DetectorType::kCcd})
+  for (const DetectorType type : {DetectorType::kCcd, DetectorType::kCmos})
     for (const auto& effect : effect_table(type))
       EXPECT_TRUE(covered.contains(std::string(effect->spec().name))) << effect->spec().name << " has no scene here";
 }

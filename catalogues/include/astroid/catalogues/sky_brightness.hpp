@@ -3,6 +3,7 @@
 
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/mission.hpp"
+#include "astroid/core/noise.hpp"
 #include "astroid/core/units.hpp"
 
 namespace astroid {
@@ -41,6 +42,9 @@ ElectronsPerSecond sky_rate(const Mission& mission, ElectronsPerSecond rate, Sky
 /// What light from nowhere in the catalogue gives on average: the sky on the axis in the middle of the run, and stray
 /// light.
 ElectronsPerSecond mean_background_rate(const Mission& mission);
+
+/// Background and dark current of one exposure with that light, and the noise of reading it.
+PixelNoise expected_pixel_noise(const Mission& mission);
 
 /// Middle of the run, since its start.
 Seconds middle_of_run(const SimulationSettings& simulation);

@@ -14,6 +14,7 @@
 #include "astroid/core/random.hpp"
 #include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
+#include "astroid/sim/cmos_state.hpp"
 #include "astroid/sim/conditions.hpp"
 #include "astroid/sim/moving_image.hpp"
 #include "astroid/sim/scene_summary.hpp"
@@ -46,6 +47,7 @@ inline constexpr std::uint32_t kSampled = 1U << 3;   ///< drawn electrons
 inline constexpr std::uint32_t kAnalog = 1U << 4;    ///< ADU before digitising
 inline constexpr std::uint32_t kDigital = 1U << 5;   ///< ADU as delivered
 inline constexpr std::uint32_t kFlags = 1U << 6;     ///< pixel flags (given, zero)
+inline constexpr std::uint32_t kRamp = 1U << 7;      ///< what is kept of the reads of a ramp
 }  // namespace plane_bit
 
 enum class RandomScope : std::uint8_t { kNone, kStatic, kPerExposure };
@@ -114,6 +116,7 @@ struct CameraState {
   std::vector<std::vector<std::vector<RenderedStar>>> variables;  ///< likewise those whose flux varies
   Plane<float, unit::Relative> prnu;           ///< pixel response, mean 1; empty when the effect is off
   Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
+  CmosPatterns cmos;                           ///< of a CMOS detector
 };
 
 /// Everything that belongs to one exposure of one camera. One worker owns it.
@@ -130,12 +133,14 @@ struct ExposureState {
   StripPlane<double, unit::ExpectedElectrons> expected;
   StripPlane<double, unit::SampledElectrons> sampled;
   StripPlane<double, unit::Adu> analog;
+  RampPlanes ramps;                    ///< where an exposure is read more than once
   Frame frame;                         ///< the delivered pixels
   std::unique_ptr<Frame> more;         ///< the computed pixels, where they are more than the delivered ones
   double lost_electrons = 0.0;         ///< charge that left through the edge of the frame or was clipped
   std::int64_t clipped_pixels = 0;     ///< by the ADC
   std::vector<double> effect_seconds;  ///< wall time of each effect of the plan, over all exposures this state has seen
-  std::vector<double> scratch;         ///< of the renderer; its content means nothing between calls
+  std::vector<double> scratch;         ///< of the effect at work; its content means nothing between calls
+  std::vector<float> normals;          ///< the same for random numbers
 
   /// Digital numbers and flags of the computed pixels: what effects write.
   [[nodiscard]] Frame& computed() { return more != nullptr ? *more : frame; }

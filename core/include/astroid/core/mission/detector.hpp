@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "astroid/core/ramp.hpp"
 #include "astroid/core/units.hpp"
 
 namespace astroid {
@@ -138,20 +139,21 @@ struct CcdSettings {
 
 /// What only a CMOS detector has; CcdSettings holds the rest.
 struct CmosSettings {
-  int reads = 1;                    ///< non-destructive reads of an exposure, evenly spaced, the last at its end
+  /// Reads of an exposure. 1: at its end, after a reset at its beginning. More: non-destructive, evenly spaced, the
+  /// first at the beginning of the exposure, the last at its end.
+  int reads = 1;
+  RampFit ramp_fit = RampFit::kOptimal;
   Electrons reset_noise{0.0};       ///< kTC, rms
   double gain_rms = 0.0;            ///< of the pixels' gain, relative
   Adu offset_rms{0.0};              ///< of the pixels' offset
-  double noise_rms = 0.0;           ///< of the pixels' readout noise, relative (log-normal)
-  double coupling = 0.0;            ///< inter-pixel capacitance: share of each of the four neighbours
+  double noise_rms = 0.0;           ///< of the logarithm of the pixels' readout noise; CCD/ReadoutNoise is its rms
+  double coupling = 0.0;            ///< inter-pixel capacitance: share of each of the four neighbours at the sides
+  double corner_coupling = 0.0;     ///< and at the corners
   Electrons column_noise{0.0};      ///< rms, of each column of each read
   Electrons row_noise{0.0};         ///< rms, of each row of each read
   double telegraph_fraction = 0.0;  ///< of the pixels
-  Electrons telegraph_amplitude{0.0};
-  Seconds telegraph_time{10.0};     ///< mean time in each state
-  double persistence = 0.0;         ///< share of an exposure's charge that is left to the next ones
-  Seconds persistence_time{100.0};  ///< in which it decays
-  Seconds line_time{0.0};           ///< of the rolling shutter, from row to row; 0: global shutter
+  ElectronsPerSecond telegraph_current{0.0};  ///< dark current that their high state has more than their low one
+  Seconds telegraph_low{1000.0}, telegraph_high{1000.0};  ///< mean stay in each state
 
   friend bool operator==(const CmosSettings&, const CmosSettings&) = default;
 };
