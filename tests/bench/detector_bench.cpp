@@ -1,0 +1,58 @@
+// Time that a full frame spends in the effects of the detector: whole frames, since they look beyond a strip.
+#include <benchmark/benchmark.h>
+
+#include <cstddef>
+#include <vector>
+
+#include "astroid/core/image.hpp"
+#include "astroid/sim/charge_transfer.hpp"
+
+namespace astroid {
+namespace {
+
+constexpr int kSide = 4510;  // PLATO's CCD
+
+/// A frame of background and stars.
+Image<double, unit::SampledElectrons> frame() {
+  Image<double, unit::SampledElectrons> image(kSide, kSide);
+  std::size_t i = 0;
+  for (double& pixel : image.pixels()) {
+    pixel = i % 211 == 5 ? 3e4 : 900.0 + static_cast<double>(i % 61);
+    ++i;
+  }
+  return image;
+}
+
+TransferChain rows_of(Image<double, unit::SampledElectrons>& image) {
+  TransferChain chain{{}, static_cast<std::size_t>(image.nx()), 1};
+  for (int y = 0; y < image.ny(); ++y) chain.packets.push_back(image.row(y).data());
+  return chain;
+}
+
+void count_pixels(benchmark::State& state) {
+  state.counters["time/pixel"] = benchmark::Counter(static_cast<double>(state.iterations()) * kSide * kSide,
+                                                    benchmark::Counter::kIsRate | benchmark::Counter::kInvert);  // s
+}
+
+void BM_ChargeTransfer(benchmark::State& state, double efficiency) {
+  auto image = frame();
+  const TransferChain chain = rows_of(image);
+  for (auto _ : state) benchmark::DoNotOptimize(transfer(chain, efficiency));
+  count_pixels(state);
+}
+BENCHMARK_CAPTURE(BM_ChargeTransfer, cte_0.999999, 0.999999)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_ChargeTransfer, cte_0.9999, 0.9999)->Unit(benchmark::kMillisecond);
+
+void BM_Traps(benchmark::State& state) {
+  auto image = frame();
+  const TransferChain chain = rows_of(image);
+  TrapModel model;
+  model.dwell = Seconds(7.7e-4);
+  for (int k = 0; k < state.range(0); ++k) model.species.push_back({1.0, 1e-21, Seconds(1e-3)});
+  for (auto _ : state) benchmark::DoNotOptimize(transfer_through_traps(chain, model));
+  count_pixels(state);
+}
+BENCHMARK(BM_Traps)->Arg(1)->Arg(4)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace astroid
