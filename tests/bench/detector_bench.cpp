@@ -8,6 +8,7 @@
 #include "astroid/sim/brighter_fatter.hpp"
 #include "astroid/sim/charge_transfer.hpp"
 #include "astroid/sim/cosmic_rays.hpp"
+#include "astroid/sim/power_law_field.hpp"
 
 namespace astroid {
 namespace {
@@ -78,6 +79,13 @@ void BM_BrighterFatter(benchmark::State& state) {
   count_pixels(state);
 }
 BENCHMARK(BM_BrighterFatter)->Arg(2)->Arg(4)->Unit(benchmark::kMillisecond);
+
+void BM_PowerLawField(benchmark::State& state) {
+  const RandomStream stream = make_stream(1, StreamId{50}, 0, 0);
+  for (auto _ : state) benchmark::DoNotOptimize(PowerLawField(stream, kSide, kSide, 1.0, 0.01).at(7, 7));
+  count_pixels(state);
+}
+BENCHMARK(BM_PowerLawField)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace astroid

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <map>
 
 namespace astroid {
 namespace {
@@ -13,7 +14,9 @@ using Electrons2d = Image<double, unit::SampledElectrons>;
 
 /// E1 by summing the integral in steps of ln t.
 double exponential_integral(double x) {
-  double sum = 0.0;
+  static std::map<double, double> known;
+  if (const auto found = known.find(x); found != known.end()) return found->second;
+  double& sum = known[x];
   constexpr double kStep = 1e-4;
   for (double u = std::log(x) + 0.5 * kStep; u < std::log(60.0); u += kStep) sum += std::exp(-std::exp(u)) * kStep;
   return sum;
