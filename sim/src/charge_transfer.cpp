@@ -21,10 +21,8 @@ constexpr double kNegligible = 1e-16;
 /// The shares of a packet that arrive with it and behind it: C(N+k-1, k) e^k (1-e)^N for k = 0, 1, ...
 class Trail {
  public:
-  Trail(double efficiency, int transfers)
-      : loss_(1.0 - efficiency), transfers_(transfers), log_scale_(transfers * det::log1p(-loss_)) {
-    scale_ = det::exp(log_scale_);
-  }
+  Trail(double loss, int transfers)
+      : loss_(loss), transfers_(transfers), log_scale_(transfers * det::log1p(-loss)), scale_(det::exp(log_scale_)) {}
 
   [[nodiscard]] double share() const { return mantissa_ * scale_; }
   /// Goes on to the next packet. @returns whether anything but a negligible share follows
@@ -49,14 +47,14 @@ class Trail {
   double loss_;
   double transfers_;
   double log_scale_;
-  double scale_ = 1.0;
+  double scale_;
   double mantissa_ = 1.0;
   double k_ = 0.0;
 };
 
 /// Whether all of a packet arrives, or nothing ever does.
-bool is_extreme(double efficiency) {
-  return efficiency >= 1.0 || efficiency <= 0.0;
+bool is_extreme(double loss) {
+  return loss <= 0.0 || loss >= 1.0;
 }
 
 double sum(std::span<const double> values) {
@@ -89,29 +87,29 @@ std::vector<TrapPassage> passages_of_one_transfer(const TrapModel& model) {
 
 }  // namespace
 
-int trail_length(double efficiency, int transfers) {
-  if (is_extreme(efficiency) || transfers <= 0) return 0;
-  Trail trail(efficiency, transfers);
+int trail_length(double loss, int transfers) {
+  if (is_extreme(loss) || transfers <= 0) return 0;
+  Trail trail(loss, transfers);
   int length = 0;
   while (trail.next()) ++length;
   return length;
 }
 
-double transfer(const TransferChain& chain, double efficiency) {
-  ASTROID_CHECK_LE(efficiency, 1.0);
-  if (efficiency >= 1.0) return 0.0;
+double transfer(const TransferChain& chain, double loss) {
+  ASTROID_CHECK_LE(0.0, loss);
+  if (loss <= 0.0) return 0.0;
   double lost = 0.0;
   // From the last packet on: those ahead have not been moved yet when they leave their charge behind.
   for (std::size_t i = chain.packets.size(); i-- > 0;) {
     const std::span<double> packet(chain.packets[i], chain.width);
     const int transfers = chain.first_transfers + static_cast<int>(i);
     if (transfers <= 0) continue;
-    if (efficiency <= 0.0) {
+    if (loss >= 1.0) {
       lost += sum(packet);
       std::ranges::fill(packet, 0.0);
       continue;
     }
-    Trail trail(efficiency, transfers);
+    Trail trail(loss, transfers);
     const double kept = trail.share();
     double beyond = 0.0;
     for (std::size_t j = i + 1; trail.next(); ++j) {

@@ -21,21 +21,24 @@ constexpr double kMoyalVariance = 0.5 * std::numbers::pi * std::numbers::pi;
 /// Where the random words of a tile are.
 class TileWords {
  public:
-  TileWords(const RandomStream& stream, int tile_x, int tile_y, std::uint32_t exposure)
+  TileWords(const RandomStream& stream, int tile_x, int tile_y, CosmicTime time)
       : stream_(stream),
         x_(static_cast<std::uint32_t>(tile_x)),
         y_(static_cast<std::uint32_t>(tile_y)),
-        exposure_(exposure) {}
+        exposure_(time.exposure),
+        read_(std::uint32_t{time.read} << kReadShift) {}
   [[nodiscard]] RandomWords number() const { return at(0); }
   [[nodiscard]] RandomWords track(std::uint32_t k) const { return at(1 + 2 * k); }
   [[nodiscard]] RandomWords charge(std::uint32_t k) const { return at(2 + 2 * k); }
 
  private:
-  [[nodiscard]] RandomWords at(std::uint32_t draw) const { return philox4x32(stream_, {x_, y_, exposure_, draw}); }
+  static constexpr unsigned kReadShift = 16;
+  [[nodiscard]] RandomWords at(std::uint32_t draw) const { return philox4x32(stream_, {x_, y_, exposure_, read_ | draw}); }
   const RandomStream& stream_;
   std::uint32_t x_;
   std::uint32_t y_;
   std::uint32_t exposure_;
+  std::uint32_t read_;
 };
 
 std::uint32_t number_of(const CosmicRayModel& model, const TileWords& words) {
@@ -142,8 +145,8 @@ int reach_of(const CosmicRayModel& model) {
 }
 
 std::vector<CosmicRay> cosmic_rays_of_tile(const CosmicRayModel& model, const RandomStream& stream, int tile_x,
-                                           int tile_y, std::uint32_t exposure) {
-  const TileWords words(stream, tile_x, tile_y, exposure);
+                                           int tile_y, CosmicTime time) {
+  const TileWords words(stream, tile_x, tile_y, time);
   std::vector<CosmicRay> rays;
   const std::uint32_t number = number_of(model, words);
   for (std::uint32_t k = 0; k < number; ++k) {
@@ -174,7 +177,7 @@ double leave_track(const CosmicRay& ray, const ImageView<double, unit::SampledEl
   return left;
 }
 
-double add_cosmic_rays(const CosmicRayModel& model, const RandomStream& stream, std::uint32_t exposure,
+double add_cosmic_rays(const CosmicRayModel& model, const RandomStream& stream, CosmicTime time,
                        const ImageView<double, unit::SampledElectrons>& electrons,
                        const ImageView<std::uint8_t, unit::Flags>* flags) {
   const Rectangle& area = electrons.area();
@@ -183,7 +186,7 @@ double add_cosmic_rays(const CosmicRayModel& model, const RandomStream& stream, 
   double left = 0.0;
   for (int tile_y = tile_of(area.y0 - reach); tile_y <= tile_of(area.y1() - 1 + reach); ++tile_y) {
     for (int tile_x = tile_of(area.x0 - reach); tile_x <= tile_of(area.x1() - 1 + reach); ++tile_x) {
-      const TileWords words(stream, tile_x, tile_y, exposure);
+      const TileWords words(stream, tile_x, tile_y, time);
       const std::uint32_t number = number_of(model, words);
       for (std::uint32_t k = 0; k < number; ++k) {
         const RandomWords track = words.track(k);

@@ -37,14 +37,14 @@ void count_pixels(benchmark::State& state) {
                                                     benchmark::Counter::kIsRate | benchmark::Counter::kInvert);  // s
 }
 
-void BM_ChargeTransfer(benchmark::State& state, double efficiency) {
+void BM_ChargeTransfer(benchmark::State& state, double loss) {
   auto image = frame();
   const TransferChain chain = rows_of(image);
-  for (auto _ : state) benchmark::DoNotOptimize(transfer(chain, efficiency));
+  for (auto _ : state) benchmark::DoNotOptimize(transfer(chain, loss));
   count_pixels(state);
 }
-BENCHMARK_CAPTURE(BM_ChargeTransfer, cte_0.999999, 0.999999)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_ChargeTransfer, cte_0.9999, 0.9999)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_ChargeTransfer, loss_1e-6, 1e-6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_ChargeTransfer, loss_1e-4, 1e-4)->Unit(benchmark::kMillisecond);
 
 void BM_Traps(benchmark::State& state) {
   auto image = frame();
@@ -67,7 +67,7 @@ void BM_CosmicRays(benchmark::State& state) {
   model.longest_track = 15.0;
   const RandomStream stream = make_stream(1, StreamId{51}, 0, 0);
   std::uint32_t exposure = 0;
-  for (auto _ : state) benchmark::DoNotOptimize(add_cosmic_rays(model, stream, exposure++, image.view()));
+  for (auto _ : state) benchmark::DoNotOptimize(add_cosmic_rays(model, stream, {exposure++}, image.view()));
   count_pixels(state);
 }
 BENCHMARK(BM_CosmicRays)->Unit(benchmark::kMillisecond);

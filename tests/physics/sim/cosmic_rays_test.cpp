@@ -84,14 +84,14 @@ TEST(CosmicRays, OfAWindowAreThoseOfTheFullFrame) {
     Electrons2d frame(200, 150);
     Image<std::uint8_t, unit::Flags> frame_flags(200, 150);
     const auto all_flags = frame_flags.view();
-    add_cosmic_rays(model, stream, 3, frame.view(), &all_flags);
+    add_cosmic_rays(model, stream, {3}, frame.view(), &all_flags);
     EXPECT_GT(sum(frame), 0.0);
     for (const Rectangle& area : {Rectangle{0, 0, 6, 6}, Rectangle{194, 144, 6, 6}, Rectangle{60, 31, 7, 2},
                                   Rectangle{0, 149, 200, 1}, Rectangle{199, 0, 1, 150}}) {
       Electrons2d window(area);
       Image<std::uint8_t, unit::Flags> window_flags(area);
       const auto flags = window_flags.view();
-      add_cosmic_rays(model, stream, 3, window.view(), &flags);
+      add_cosmic_rays(model, stream, {3}, window.view(), &flags);
       for (int y = area.y0; y < area.y1(); ++y)
         for (int x = area.x0; x < area.x1(); ++x) {
           EXPECT_EQ(window.at(x, y), frame.at(x, y));
@@ -106,7 +106,7 @@ TEST(CosmicRays, OfARateOfZeroAreNone) {
   CosmicRayModel model = many();
   model.hits_per_pixel = 0.0;
   Electrons2d image(50, 50);
-  EXPECT_EQ(add_cosmic_rays(model, make_stream(7, StreamId{51}, 0, 0), 0, image.view()), 0.0);
+  EXPECT_EQ(add_cosmic_rays(model, make_stream(7, StreamId{51}, 0, 0), {0}, image.view()), 0.0);
   for (const double pixel : image.pixels()) EXPECT_EQ(pixel, 0.0);
 }
 

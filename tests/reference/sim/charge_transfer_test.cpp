@@ -33,12 +33,12 @@ TEST(ChargeTransfer, IsAShiftRegister) {
   constexpr std::size_t kOverscan = 200;
   std::vector<double> column(kRows);
   for (std::size_t i = 0; i < kRows; ++i) column[i] = static_cast<double>((i * 2654435761U) % 100003U);
-  for (const double efficiency : {0.99999, 0.999, 0.97, 0.6}) {
-    const std::vector<double> expected = shift_step_by_step(column, efficiency, kRows + kOverscan);
+  for (const double loss : {1e-5, 1e-3, 0.03, 0.4}) {
+    const std::vector<double> expected = shift_step_by_step(column, 1.0 - loss, kRows + kOverscan);
     std::vector<double> moved = column;
     moved.resize(kRows + kOverscan, 0.0);
-    transfer(chain_of(moved), efficiency);
-    for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_NEAR(moved[i], expected[i], 1e-8) << efficiency << ' ' << i;
+    transfer(chain_of(moved), loss);
+    for (std::size_t i = 0; i < moved.size(); ++i) EXPECT_NEAR(moved[i], expected[i], 1e-8) << loss << ' ' << i;
   }
 }
 

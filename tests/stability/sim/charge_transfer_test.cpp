@@ -1,4 +1,4 @@
-// Hard case N21: thousands of transfers of an efficiency close to 1, and the extremes.
+// Hard case N21: thousands of transfers of an efficiency of 0.999999, and the extremes.
 #include "astroid/sim/charge_transfer.hpp"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ double sum(const std::vector<double>& v) {
 TEST(ChargeTransfer, KeepsAndDefersAsTheBinomialSays) {
   std::vector<double> column(4520, 0.0);
   column[4509] = 1e5;
-  const double lost = transfer(rows_of(column, 1, 1), 0.999999);
+  const double lost = transfer(rows_of(column, 1, 1), 1e-6);
   EXPECT_NEAR(column[4509] / 1e5, 0.9955001525332642, 1e-12);
   EXPECT_NEAR(column[4510] / 1e5, 4.48970569e-3, 1e-11);
   EXPECT_NEAR(sum(column) + lost, 1e5, 1e-12 * 1e5);
@@ -37,15 +37,15 @@ TEST(ChargeTransfer, KeepsAndDefersAsTheBinomialSays) {
 TEST(ChargeTransfer, HasTheWholeTrailOfTheLogGammaFunction) {
   // Also where almost nothing stays with its packet, and where (1-e)^N is below the smallest double.
   struct Case {
-    double efficiency;
+    double loss;
     int transfers;
   };
-  for (const Case& c : {Case{0.999999, 4510}, Case{0.9999, 4510}, Case{0.99, 1000}, Case{0.5, 60}, Case{0.4, 2000}}) {
+  for (const Case& c : {Case{1e-6, 4510}, Case{1e-4, 4510}, Case{0.01, 1000}, Case{0.5, 60}, Case{0.6, 2000}}) {
     std::vector<double> column(4000, 0.0);
     column[0] = 1.0;
-    const double lost = transfer(rows_of(column, 1, c.transfers), c.efficiency);
-    EXPECT_NEAR(sum(column) + lost, 1.0, 1e-12) << c.efficiency;
-    const double e = 1.0 - c.efficiency;
+    const double lost = transfer(rows_of(column, 1, c.transfers), c.loss);
+    EXPECT_NEAR(sum(column) + lost, 1.0, 1e-12) << c.loss;
+    const double e = c.loss;
     for (std::size_t k = 0; k < column.size(); ++k) {
       const double n = c.transfers;
       const double kk = static_cast<double>(k);
@@ -54,28 +54,28 @@ TEST(ChargeTransfer, HasTheWholeTrailOfTheLogGammaFunction) {
       const double share = std::exp(log_share);
       if (share > 1e-12) {
         // What lgamma of large numbers leaves of 16 digits.
-        EXPECT_NEAR(column[k] / share, 1.0, 1e-10) << c.efficiency << ' ' << k;
+        EXPECT_NEAR(column[k] / share, 1.0, 1e-10) << c.loss << ' ' << k;
       }
     }
   }
 }
 
-TEST(ChargeTransfer, OfEfficiencyOneLeavesTheBitsAlone) {
+TEST(ChargeTransfer, OfNoLossLeavesTheBitsAlone) {
   std::vector<double> column{1.0, 0.1, -0.0, 5e-324, 1e300};
   const std::vector<double> before = column;
-  EXPECT_EQ(transfer(rows_of(column, 1, 4510), 1.0), 0.0);
+  EXPECT_EQ(transfer(rows_of(column, 1, 4510), 0.0), 0.0);
   for (std::size_t i = 0; i < column.size(); ++i)
     EXPECT_EQ(std::bit_cast<std::uint64_t>(column[i]), std::bit_cast<std::uint64_t>(before[i]));
 }
 
-TEST(ChargeTransfer, OfEfficiencyZeroDefersEverything) {
+TEST(ChargeTransfer, OfTotalLossDefersEverything) {
   std::vector<double> column{1.0, 2.0, 3.0};
-  EXPECT_EQ(transfer(rows_of(column, 1, 1), 0.0), 6.0);
+  EXPECT_EQ(transfer(rows_of(column, 1, 1), 1.0), 6.0);
   EXPECT_EQ(column, (std::vector<double>{0.0, 0.0, 0.0}));
 }
 
 TEST(ChargeTransfer, OfNoPacketsIsNothing) {
-  EXPECT_EQ(transfer({}, 0.9), 0.0);
+  EXPECT_EQ(transfer({}, 0.1), 0.0);
   EXPECT_EQ(transfer_through_traps({}, {.species = {{1.0, 1e-20, Seconds(1e-3)}}}), 0.0);
 }
 

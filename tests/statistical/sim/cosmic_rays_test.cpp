@@ -44,7 +44,7 @@ int number_in(const CosmicRayModel& model, const Rectangle& area, std::uint32_t 
   int number = 0;
   for (int ty = -2; ty <= area.y1() / kCosmicTile + 1; ++ty)
     for (int tx = -2; tx <= area.x1() / kCosmicTile + 1; ++tx)
-      for (const CosmicRay& ray : cosmic_rays_of_tile(model, stream(), tx, ty, exposure))
+      for (const CosmicRay& ray : cosmic_rays_of_tile(model, stream(), tx, ty, {exposure}))
         number += ray.entry.x >= area.x0 - 0.5 && ray.entry.x < area.x1() - 0.5 && ray.entry.y >= area.y0 - 0.5 &&
                   ray.entry.y < area.y1() - 0.5;
   return number;
@@ -82,7 +82,7 @@ TEST(CosmicRays, OfNeighbouringTilesAreIndependent) {
     double product = 0.0;
     for (std::uint32_t exposure = 0; exposure < kExposures; ++exposure) {
       const auto deviation = [&](int x, int y) {
-        return static_cast<double>(cosmic_rays_of_tile(model, stream(), x, y, exposure).size()) - mean;
+        return static_cast<double>(cosmic_rays_of_tile(model, stream(), x, y, {exposure}).size()) - mean;
       };
       product += deviation(0, 0) * deviation(dx, dy);
     }
@@ -98,7 +98,7 @@ TEST(CosmicRays, HaveTheChargeAndTheLengthOfTheModel) {
     double length = 0.0;
     for (std::uint32_t exposure = 0; exposure < 60; ++exposure)
       for (int tile = 0; tile < 400; ++tile)
-        for (const CosmicRay& ray : cosmic_rays_of_tile(model, stream(), tile % 20, tile / 20, exposure)) {
+        for (const CosmicRay& ray : cosmic_rays_of_tile(model, stream(), tile % 20, tile / 20, {exposure})) {
           charges.push_back(ray.electrons);
           length += std::hypot(ray.track.dx, ray.track.dy);
           ASSERT_LE(std::hypot(ray.track.dx, ray.track.dy), model.longest_track * (1.0 + 1e-12));
@@ -137,7 +137,7 @@ TEST(CosmicRays, LeaveTheSameChargeInEveryRowAndColumn) {
   constexpr int kExposures = 3000;
   Image<double, unit::SampledElectrons> sum(kSide, kSide);
   for (std::uint32_t exposure = 0; exposure < kExposures; ++exposure)
-    add_cosmic_rays(model, stream(), exposure, sum.view());
+    add_cosmic_rays(model, stream(), {exposure}, sum.view());
   const CosmicCharge charge = charge_of(model);
   const double expected = kExposures * model.hits_per_pixel * charge.mean * kSide;
   // A particle leaves its charge in one row at most: an upper bound of the variance of a row.

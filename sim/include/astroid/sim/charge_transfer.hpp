@@ -17,20 +17,21 @@ struct TransferChain {
 };
 
 /// How many packets behind its own the charge of a packet is spread over: all but 1e-16 of it.
-/// @param efficiency  charge transfer efficiency of one transfer, 0 .. 1.
-int trail_length(double efficiency, int transfers);
+/// @param loss  share that one transfer leaves behind, 0 .. 1: 1 - charge transfer efficiency (CTE).
+int trail_length(double loss, int transfers);
 
-/// Moves packets that lose the same share at every transfer, whatever they hold (charge transfer efficiency, CTE).
+/// Moves packets that lose the same share e at every transfer, whatever they hold: a constant CTE of 1 - e.
 ///
-/// After N transfers a packet keeps (1-e)^N of its charge, e = 1 - efficiency, and C(N+k-1, k) e^k (1-e)^N arrives k
-/// packets later. Efficiency 1 leaves the bits alone; with efficiency 0 nothing ever arrives.
+/// After N transfers a packet keeps (1-e)^N of its charge, and C(N+k-1, k) e^k (1-e)^N arrives k packets later. A loss of
+/// 0 leaves the bits alone; with a loss of 1 nothing ever arrives.
+/// @param loss  e, 0 .. 1.
 /// @returns   electrons that come out behind the last packet. Before = after + returned.
 /// @accuracy  weights relative 1e-12 (test: ChargeTransfer.KeepsAndDefersAsTheBinomialSays); charge relative 1e-12.
 /// A packet's result depends on the trail_length() packets before it only, so a part of a chain that begins that far
 /// ahead has the same bits.
-/// @complexity O(pixels x trail length), 7 packets at 4510 transfers of 0.999999  @rng none  @thread safe
+/// @complexity O(pixels x trail length), 4 packets behind 4510 transfers of loss 1e-6  @rng none  @thread safe
 /// @source Janesick2001; SCIENCE F36.
-double transfer(const TransferChain& chain, double efficiency);
+double transfer(const TransferChain& chain, double loss);
 
 /// One kind of lattice defect that holds electrons back.
 struct TrapSpecies {

@@ -38,6 +38,12 @@ struct CosmicRay {
   double electrons = 0.0;  ///< along the track, uniformly
 };
 
+/// When particles are counted: in an exposure, or between two non-destructive reads of it.
+struct CosmicTime {
+  std::uint32_t exposure = 0;
+  std::uint16_t read = 0;
+};
+
 /// Mean and variance of the charge of one particle.
 struct CosmicCharge {
   double mean = 0.0;      ///< e-
@@ -51,10 +57,11 @@ int reach_of(const CosmicRayModel& model);
 
 /// The particles that enter in one tile of the detector: columns kCosmicTile * tile_x and following. Their number is
 /// Poisson distributed with mean hits_per_pixel * kCosmicTile². Tiles before the first pixel and behind the last exist.
-/// @rng  counter {tile_x, tile_y, exposure, 0} for the number; {tile_x, tile_y, exposure, 1 + 2k} for entry, direction
-///       and length of the k-th, the same + 1 for its charge (docs/random-numbers.md).
+/// @rng  counter {tile_x, tile_y, exposure, read << 16 | draw}: draw 0 for the number, 1 + 2k for entry, direction and
+///       length of the k-th, 2 + 2k for its charge (docs/random-numbers.md).
+/// @valid  means of up to 20000 particles in a tile.
 std::vector<CosmicRay> cosmic_rays_of_tile(const CosmicRayModel& model, const RandomStream& stream, int tile_x,
-                                           int tile_y, std::uint32_t exposure);
+                                           int tile_y, CosmicTime time);
 
 /// Leaves the charge of one particle along its track, each pixel getting the part of the track within it.
 /// @param flags  [in,out] gains pixel_flag::kCosmicRay where charge was left.  @returns electrons left in the image.
@@ -70,7 +77,7 @@ double leave_track(const CosmicRay& ray, const ImageView<double, unit::SampledEl
 /// @returns      electrons left in the image.
 /// @complexity   O(tiles within reach + particles x length) (bench: BM_CosmicRays)  @thread safe
 /// @source Jannsen2024; differs: number Poisson, sub-pixel parts exact, every row and column can be hit.
-double add_cosmic_rays(const CosmicRayModel& model, const RandomStream& stream, std::uint32_t exposure,
+double add_cosmic_rays(const CosmicRayModel& model, const RandomStream& stream, CosmicTime time,
                        const ImageView<double, unit::SampledElectrons>& electrons,
                        const ImageView<std::uint8_t, unit::Flags>* flags = nullptr);
 
