@@ -25,6 +25,11 @@ constexpr std::array kSections = {
     Section{"CCD/OpticalAxis",
             "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
     Section{"CCD/SubField", "The part of the detector that is simulated; without this element all of it."},
+    Section{"CCD/FlatField", "A pattern of sensitivity with a power-law spatial spectrum, beside the white PRNU."},
+    Section{"CCD/ChargeInjection", "Lines of charge that keep traps filled."},
+    Section{"CCD/CosmicRays", "Particles that leave tracks of charge."},
+    Section{"CCD/BrighterFatter", "Charge in a pixel pushes its boundaries inwards."},
+    Section{"CCD/CTI", "Charge that transfers leave behind."},
     Section{"Photometry", "How fluxes are measured."},
     Section{"Photometry/Annulus", "Ring around a star in which the local background is measured."},
     Section{"Photometry/Calibration", "Which corrections are applied to the images before they are measured."},
@@ -36,7 +41,7 @@ std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part :
        {simulation_parameters, satellite_parameters, telescope_parameters, psf_parameters, stellar_field_parameters,
-        ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+        ccd_parameters, pixel_effect_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

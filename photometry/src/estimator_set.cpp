@@ -274,7 +274,7 @@ double EstimatorSet::background_without_spoilt(const Frame& frame, const Target&
     const float counts = frame.pixels.pixels()[pixel];
     const std::uint8_t pixel_flags = frame.flags.pixels()[pixel];
     saturated = saturated || (aperture_flags(pixel_flags) & measurement_flag::kSaturated) != 0;
-    if (pixel_flags != 0 || !std::isfinite(counts)) continue;
+    if ((pixel_flags & ~unsigned{pixel_flag::kTruth}) != 0 || !std::isfinite(counts)) continue;
     sum += static_cast<double>(counts);
     ++good;
   }
