@@ -3,7 +3,12 @@
 #include "astroid/sim/effect_table.hpp"
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
+#include "effects/brighter_fatter.hpp"
+#include "effects/charge_injection.hpp"
+#include "effects/cosmic_rays.hpp"
+#include "effects/cti.hpp"
 #include "effects/dark_current.hpp"
+#include "effects/flat_field.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
 #include "effects/jitter_file.hpp"
@@ -34,8 +39,8 @@ struct Table {
 using CcdTable = Table<JitterModelEffect, JitterFileEffect,         // Pointing
                        Stars,                                       // Optics
                        Sky,                                         // Sky
-                       Prnu, DarkCurrent,                           // PixelMean
-                       PhotonNoise, FullWell,                       // PixelSample
+                       FlatField, Prnu, DarkCurrent, ChargeInjection,  // PixelMean
+                       PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,  // PixelSample
                        ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "astroid/core/math.hpp"
 #include "astroid/sim/effect_table.hpp"
 #include "plan_cost.hpp"
+#include "reference_pixels.hpp"
 
 namespace astroid {
 
@@ -113,16 +114,8 @@ void plan_polynomial(const Scene& scene, double share, Plan& plan) {
   plan.jitter_error = flux * left_out;
 }
 
-std::string describe_pixels(const Scene& scene, const Plan& plan, std::vector<std::string>& approximations) {
+std::string describe_pixels(const Scene& scene) {
   const CcdSettings& ccd = scene.mission().ccd;
-  const bool blooms = plan.runs("full-well") && ccd.blooming;
-  if (ccd.window > 0 || ccd.has_sub_field) {
-    if (blooms)
-      approximations.emplace_back(
-          "charge that blooms into the computed pixels from saturated stars outside them is left out; everything else "
-          "is "
-          "bit for bit what the full frame has");
-  }
   if (ccd.window > 0)
     return fmt::format("{} windows of {} x {} px ({} px in all) of the {} x {} px detector",
                        scene.layout()->regions().size(), ccd.window, ccd.window, scene.layout()->size(), ccd.columns,
@@ -172,9 +165,9 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
   for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned)
     if (planned->need.needed) planned->effect->support(scene, regions);
   if (std::ranges::equal(regions, exposed)) return scene.layout();
-  const std::span<const Rectangle> reference = delivered.reference_regions();
-  return std::make_shared<const PixelLayout>(std::move(regions),
-                                             std::vector<Rectangle>(reference.begin(), reference.end()));
+  const std::vector<Rectangle> reference =
+      reference_regions(regions, scene.detector(), scene.mission().ccd.reference);
+  return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 
 std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
@@ -221,7 +214,7 @@ Plan make_plan(const Scene& scene) {
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   plan_jitter(scene, kShares.jitter, moves, plan);
   if (steady) plan_polynomial(scene, kShares.jitter, plan);
-  plan.pixels = describe_pixels(scene, plan, plan.approximations);
+  plan.pixels = describe_pixels(scene);
   plan.seconds_per_exposure = predicted_seconds(plan, scene);
   plan.memory_bytes = predicted_memory(plan);
   return plan;

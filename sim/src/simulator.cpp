@@ -341,14 +341,24 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
 void Simulator::deliver(ExposureState& state) const {
   if (state.more == nullptr) return;
   const PixelLayout& delivered = *scene_->layout();
+  const PixelLayout& computed = *plan_->layout;
   for (std::size_t r = 0; r < delivered.regions().size(); ++r) {
     const Rectangle& region = delivered.regions()[r];
-    const auto first = static_cast<std::size_t>(region.x0 - plan_->layout->regions()[r].x0);
+    // Exposed regions keep their order; reference regions are joined anew from what is computed.
+    std::size_t from = r;
+    if (r >= delivered.exposed_regions().size()) {
+      const auto holds = [&](const Rectangle& area) { return intersect(area, region) == region; };
+      const auto found = std::ranges::find_if(computed.reference_regions(), holds);
+      ASTROID_CHECK_EQ(found != computed.reference_regions().end(), true);
+      from = computed.exposed_regions().size() +
+             static_cast<std::size_t>(found - computed.reference_regions().begin());
+    }
+    const auto first = static_cast<std::size_t>(region.x0 - computed.regions()[from].x0);
     for (int y = region.y0; y < region.y1(); ++y) {
       const auto width = static_cast<std::size_t>(region.nx);
-      std::ranges::copy(state.more->pixels.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->pixels.view(from).row(y).subspan(first, width),
                         state.frame.pixels.view(r).row(y).begin());
-      std::ranges::copy(state.more->flags.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->flags.view(from).row(y).subspan(first, width),
                         state.frame.flags.view(r).row(y).begin());
     }
   }

@@ -9,6 +9,7 @@
 #include "astroid/core/math.hpp"
 #include "astroid/sim/blooming.hpp"
 #include "astroid/sim/scene.hpp"
+#include "bloom_reach.hpp"
 
 namespace astroid {
 
@@ -28,7 +29,11 @@ EffectNeed FullWell::is_needed(const SceneSummary& scene) const {
           std::max(0.0, highest - full_well), needed ? 1.0 : 0.0};
 }
 
-void FullWell::support(const Scene& /*scene*/, std::vector<Rectangle>& /*regions*/) const {}
+void FullWell::support(const Scene& scene, std::vector<Rectangle>& regions) const {
+  if (!scene.mission().ccd.blooming) return;
+  const BloomReach reach(scene);
+  for (Rectangle& region : regions) region = reach.support(region);
+}
 
 void FullWell::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const CcdSettings& ccd = context.scene.mission().ccd;
