@@ -1,7 +1,6 @@
 #include "charge_chains.hpp"
 
 #include <algorithm>
-#include <optional>
 
 namespace astroid {
 
@@ -28,29 +27,26 @@ std::vector<Stretch> stretches(int begin, int end, const FollowerAt& follower_at
   return result;
 }
 
-/// The overscan region behind the last row that holds column x, if this region is the last that can feed it.
-const ChargeRegion* rows_behind(std::span<const ChargeRegion> regions, std::size_t exposed, const Rectangle& detector,
-                                std::size_t region, int x) {
-  if (regions[region].area.y1() != detector.y1()) return nullptr;
-  for (std::size_t r = region + 1; r < exposed; ++r) {
-    const Rectangle& later = regions[r].area;
-    if (later.y1() == detector.y1() && x >= later.x0 && x < later.x1()) return nullptr;
-  }
-  for (const ChargeRegion& reference : regions.subspan(exposed))
-    if (reference.area.contains(x, detector.y1())) return &reference;
+/// The reference region that holds a pixel, or none.
+const ChargeRegion* reference_at(const ChargePixels& pixels, int x, int y) {
+  for (std::size_t r = pixels.exposed; r < pixels.regions.size(); ++r)
+    if (pixels.regions[r].area.contains(x, y)) return &pixels.regions[r];
   return nullptr;
 }
 
-/// The same of overscan columns behind the last column, for row y.
-const ChargeRegion* columns_behind(std::span<const ChargeRegion> regions, std::size_t exposed,
-                                   const Rectangle& detector, std::size_t region, int y) {
-  if (region >= exposed || regions[region].area.x1() != detector.x1()) return nullptr;
-  for (std::size_t r = region + 1; r < exposed; ++r) {
-    const Rectangle& later = regions[r].area;
-    if (later.x1() == detector.x1() && y >= later.y0 && y < later.y1()) return nullptr;
-  }
-  for (const ChargeRegion& reference : regions.subspan(exposed))
-    if (reference.area.contains(detector.x1(), y)) return &reference;
+/// The overscan rows that column x of a region trails into.
+const ChargeRegion* rows_behind(const ChargePixels& pixels, std::size_t region, int x) {
+  for (const TrailSource& source : pixels.into_rows)
+    if (x >= source.valid.x0 && x < source.valid.x1())
+      return source.region == region ? reference_at(pixels, x, pixels.detector.y1()) : nullptr;
+  return nullptr;
+}
+
+/// The overscan columns that row y of a region trails into.
+const ChargeRegion* columns_behind(const ChargePixels& pixels, std::size_t region, int y) {
+  for (const TrailSource& source : pixels.into_columns)
+    if (y >= source.valid.y0 && y < source.valid.y1())
+      return source.region == region ? reference_at(pixels, pixels.detector.x1(), y) : nullptr;
   return nullptr;
 }
 
@@ -95,16 +91,14 @@ class TurnedRows {
 
 }  // namespace
 
-double move_rows(std::span<const ChargeRegion> regions, std::size_t exposed, const Rectangle& detector,
-                 const MoveChain& move) {
+double move_rows(const ChargePixels& pixels, const MoveChain& move) {
   double lost = 0.0;
-  for (std::size_t r = 0; r < exposed; ++r) {
-    const Rectangle& area = regions[r].area;
-    for (const Stretch& columns : stretches(area.x0, area.x1(), [&](int x) {
-           return rows_behind(regions, exposed, detector, r, x);
-         })) {
-      TransferChain chain{{}, static_cast<std::size_t>(columns.end - columns.begin), area.y0 - detector.y0 + 1};
-      for (int y = area.y0; y < area.y1(); ++y) chain.packets.push_back(regions[r].at(columns.begin, y));
+  for (std::size_t r = 0; r < pixels.exposed; ++r) {
+    const ChargeRegion& region = pixels.regions[r];
+    const Rectangle& area = region.area;
+    for (const Stretch& columns : stretches(area.x0, area.x1(), [&](int x) { return rows_behind(pixels, r, x); })) {
+      TransferChain chain{{}, static_cast<std::size_t>(columns.end - columns.begin), area.y0 - pixels.detector.y0 + 1};
+      for (int y = area.y0; y < area.y1(); ++y) chain.packets.push_back(region.at(columns.begin, y));
       if (columns.follower != nullptr)
         for (int y = columns.follower->area.y0; y < columns.follower->area.y1(); ++y)
           chain.packets.push_back(columns.follower->at(columns.begin, y));
@@ -114,20 +108,17 @@ double move_rows(std::span<const ChargeRegion> regions, std::size_t exposed, con
   return lost;
 }
 
-double move_columns(std::span<const ChargeRegion> regions, std::size_t exposed, const Rectangle& detector, int middle,
-                    int before, const MoveChain& move) {
+double move_columns(const ChargePixels& pixels, int middle, int before, const MoveChain& move) {
   constexpr int kRowsAtOnce = 64;
+  const Rectangle& detector = pixels.detector;
   double lost = 0.0;
-  for (std::size_t r = 0; r < regions.size(); ++r) {
-    const Rectangle& area = regions[r].area;
+  for (std::size_t r = 0; r < pixels.regions.size(); ++r) {
+    const Rectangle& area = pixels.regions[r].area;
     if (area.x0 < detector.x0 || area.x1() > detector.x1()) continue;  // overscan columns move with the others
-    for (const Stretch& rows : stretches(area.y0, area.y1(), [&](int y) {
-           return columns_behind(regions, exposed, detector, r, y);
-         })) {
+    const int split = std::clamp(middle, area.x0, area.x1());
+    for (const Stretch& rows : stretches(area.y0, area.y1(), [&](int y) { return columns_behind(pixels, r, y); })) {
       for (int y = rows.begin; y < rows.end; y += kRowsAtOnce) {
-        const bool to_the_end = area.x1() <= middle;
-        TurnedRows turned(regions[r], to_the_end ? rows.follower : nullptr, y, std::min(rows.end, y + kRowsAtOnce));
-        const int split = std::clamp(middle, area.x0, area.x1());
+        TurnedRows turned(pixels.regions[r], rows.follower, y, std::min(rows.end, y + kRowsAtOnce));
         if (area.x0 < split) lost += turned.move(area.x0, split, true, area.x0 - detector.x0 + 1 + before, move);
         if (split < area.x1())
           lost += turned.move(split, area.x1(), false, detector.x1() - area.x1() + 1 + before, move);

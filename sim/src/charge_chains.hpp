@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "astroid/core/image.hpp"
@@ -23,16 +22,29 @@ struct ChargeRegion {
 /// Moves a chain; returns what comes out behind it.
 using MoveChain = std::function<double(const TransferChain&)>;
 
-/// Moves the rows of every exposed region towards the register below row 0. Overscan rows behind the last row follow
-/// those columns of the last region that reaches it.
-/// @param regions  exposed ones first.  @returns electrons that come out behind the regions.
-double move_rows(std::span<const ChargeRegion> regions, std::size_t exposed, const Rectangle& detector,
-                 const MoveChain& move);
+/// An exposed region whose charge trails into overscan pixels: the rows behind the last one for columns of `valid`, or
+/// the columns behind the last one for its rows. Where several can, the first does.
+struct TrailSource {
+  std::size_t region = 0;
+  Rectangle valid;
+};
 
-/// Moves the columns of every exposed region, and of overscan rows, along the register: towards lower columns or, right
-/// of `middle`, towards higher ones. Overscan columns follow the last column where it moves to the left.
+/// The pixels of a layout and where charge trails out of the exposed ones.
+struct ChargePixels {
+  Rectangle detector;
+  std::vector<ChargeRegion> regions;  ///< exposed ones first
+  std::size_t exposed = 0;
+  std::vector<TrailSource> into_rows;
+  std::vector<TrailSource> into_columns;
+};
+
+/// Moves the rows of every exposed region towards the register below row 0, and overscan rows behind their source.
+/// @returns electrons that come out behind the regions.
+double move_rows(const ChargePixels& pixels, const MoveChain& move);
+
+/// Moves the columns of every exposed region, and of overscan rows, along the register: towards lower columns or, from
+/// `middle` on, towards higher ones. Overscan columns follow their source.
 /// @param before  elements of the register that every packet passes before the first column's place (prescan).
-double move_columns(std::span<const ChargeRegion> regions, std::size_t exposed, const Rectangle& detector, int middle,
-                    int before, const MoveChain& move);
+double move_columns(const ChargePixels& pixels, int middle, int before, const MoveChain& move);
 
 }  // namespace astroid

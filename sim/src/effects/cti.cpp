@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <span>
 #include <vector>
 
+#include "astroid/core/error.hpp"
 #include "astroid/sim/charge_transfer.hpp"
 #include "astroid/sim/scene.hpp"
 #include "charge_chains.hpp"
@@ -55,8 +57,53 @@ Reach reach_of(const CcdSettings& ccd) {
   return {has_traps(ccd.cti.trap_density) ? rows : 0, has_traps(ccd.cti.register_density) ? columns : 0};
 }
 
-bool holds(const std::vector<Rectangle>& regions, const Rectangle& wanted) {
-  return std::ranges::any_of(regions, [&](const Rectangle& r) { return intersect(r, wanted) == wanted; });
+/// A region with the pixels ahead of it that it depends on.
+Rectangle with_ahead(const Rectangle& r, const Rectangle& detector, const Reach& reach, int middle) {
+  const int left = r.x0 < middle ? reach.columns : 0;
+  const int right = r.x1() > middle ? reach.columns : 0;
+  return intersect(detector, {r.x0 - left, r.y0 - reach.rows, r.nx + left + right, r.ny + reach.rows});
+}
+
+/// Exposed pixels that trail into the overscan that is delivered: of its rows, and of its columns.
+struct Sources {
+  std::vector<Rectangle> into_rows;
+  std::vector<Rectangle> into_columns;
+};
+Sources sources_of(const Scene& scene) {
+  const CcdSettings& ccd = scene.mission().ccd;
+  const Rectangle detector = scene.detector();
+  const Reach reach = reach_of(ccd);
+  const int middle = middle_of(ccd);
+  Sources sources;
+  for (const Rectangle& reference : scene.layout()->reference_regions()) {
+    if (reference.y0 >= detector.y1())
+      sources.into_rows.push_back(
+          with_ahead({reference.x0, detector.y1() - 1, reference.nx, 1}, detector, reach, middle));
+    // With several nodes nothing is read behind the last column.
+    else if (reference.x0 >= detector.x1() && middle == detector.x1())
+      sources.into_columns.push_back(
+          with_ahead({detector.x1() - 1, reference.y0, 1, reference.ny}, detector, reach, middle));
+  }
+  return sources;
+}
+
+bool is_whole(std::span<const Rectangle> exposed, const Rectangle& detector) {
+  return exposed.size() == 1 && exposed.front() == detector;
+}
+
+/// Where each source is: behind all regions that were asked for, unless the only one is the whole detector. No effect
+/// before this one asks for regions of its own.
+void locate(const Sources& sources, ChargePixels& pixels) {
+  const std::size_t count = sources.into_rows.size() + sources.into_columns.size();
+  const bool whole = pixels.exposed == 1 && pixels.regions.front().area == pixels.detector;
+  std::size_t next = whole ? 0 : pixels.exposed - count;
+  const auto add = [&](std::vector<TrailSource>& to, const Rectangle& valid) {
+    ASTROID_CHECK_EQ(intersect(pixels.regions[next].area, valid) == valid, true);
+    to.push_back({next, valid});
+    if (!whole) ++next;
+  };
+  for (const Rectangle& valid : sources.into_rows) add(pixels.into_rows, valid);
+  for (const Rectangle& valid : sources.into_columns) add(pixels.into_columns, valid);
 }
 
 }  // namespace
@@ -94,38 +141,28 @@ EffectNeed Cti::is_needed(const SceneSummary& scene) const {
 }
 
 void Cti::support(const Scene& scene, std::vector<Rectangle>& regions) const {
-  const CcdSettings& ccd = scene.mission().ccd;
   const Rectangle detector = scene.detector();
+  if (is_whole(regions, detector)) return;
+  const CcdSettings& ccd = scene.mission().ccd;
   const Reach reach = reach_of(ccd);
-  const int middle = middle_of(ccd);
-  // What trails into overscan rows and columns comes from the last rows and columns.
-  for (const Rectangle& reference : scene.layout()->reference_regions()) {
-    const bool is_row = reference.y0 >= detector.y1();
-    const bool is_column = reference.x0 >= detector.x1() && middle == detector.x1();
-    if ((is_row && reach.rows == 0) || (is_column && reach.columns == 0) || (!is_row && !is_column)) continue;
-    const Rectangle needed = is_row ? Rectangle{reference.x0, detector.y1() - 1, reference.nx, 1}
-                                    : Rectangle{detector.x1() - 1, reference.y0, 1, reference.ny};
-    if (!holds(regions, needed)) regions.push_back(needed);
-  }
-  for (Rectangle& r : regions) {
-    const int left = r.x0 < middle ? reach.columns : 0;
-    const int right = r.x1() > middle ? reach.columns : 0;
-    r = intersect(detector, {r.x0 - left, r.y0 - reach.rows, r.nx + left + right, r.ny + reach.rows});
-  }
+  for (Rectangle& r : regions) r = with_ahead(r, detector, reach, middle_of(ccd));
+  const Sources sources = sources_of(scene);
+  regions.insert(regions.end(), sources.into_rows.begin(), sources.into_rows.end());
+  regions.insert(regions.end(), sources.into_columns.begin(), sources.into_columns.end());
 }
 
 void Cti::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const CcdSettings& ccd = context.scene.mission().ccd;
-  const Rectangle detector = context.scene.detector();
-  const std::size_t exposed = context.camera.layout->exposed_regions().size();
-  std::vector<ChargeRegion> regions;
+  ChargePixels pixels;
+  pixels.detector = context.scene.detector();
+  pixels.exposed = context.camera.layout->exposed_regions().size();
   for (std::size_t a = 0; a < strip.areas.size(); ++a)
-    regions.push_back({strip.areas[a], state.sampled.view(strip, a).data()});
+    pixels.regions.push_back({strip.areas[a], state.sampled.view(strip, a).data()});
+  locate(sources_of(context.scene), pixels);
   const auto move = [&](const MoveChain& rows, const MoveChain& columns) {
-    if (rows) state.lost_electrons += move_rows(regions, exposed, detector, rows);
+    if (rows) state.lost_electrons += move_rows(pixels, rows);
     if (columns)
-      state.lost_electrons +=
-          move_columns(regions, exposed, detector, middle_of(ccd), ccd.reference.prescan, columns);
+      state.lost_electrons += move_columns(pixels, middle_of(ccd), ccd.reference.prescan, columns);
   };
   if (ccd.cti.model == CtiModel::kSimple) {
     const auto losing = [](double loss) -> MoveChain {
