@@ -114,7 +114,7 @@ void plan_polynomial(const Scene& scene, double share, Plan& plan) {
   plan.jitter_error = flux * left_out;
 }
 
-std::string describe_pixels(const Scene& scene) {
+std::string describe_delivered(const Scene& scene) {
   const CcdSettings& ccd = scene.mission().ccd;
   if (ccd.window > 0)
     return fmt::format("{} windows of {} x {} px ({} px in all) of the {} x {} px detector",
@@ -124,6 +124,14 @@ std::string describe_pixels(const Scene& scene) {
     return fmt::format("sub-field of {} x {} px from ({}, {}) of the {} x {} px detector", ccd.sub_columns,
                        ccd.sub_rows, ccd.sub_x0, ccd.sub_y0, ccd.columns, ccd.rows);
   return fmt::format("full frame of {} x {} px", ccd.columns, ccd.rows);
+}
+
+std::string describe_pixels(const Scene& scene, const Plan& plan) {
+  std::string text = describe_delivered(scene);
+  if (plan.layout != scene.layout())
+    text += fmt::format("; {} px are computed, since charge and light of those outside reach them",
+                        plan.layout->size());
+  return text;
 }
 
 }  // namespace
@@ -162,8 +170,14 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
   const PixelLayout& delivered = *scene.layout();
   const std::span<const Rectangle> exposed = delivered.exposed_regions();
   std::vector<Rectangle> regions(exposed.begin(), exposed.end());
-  for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned)
-    if (planned->need.needed) planned->effect->support(scene, regions);
+  for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned) {
+    if (!planned->need.needed) continue;
+    planned->effect->support(scene, regions);
+    // More than the whole detector is never needed.
+    std::size_t pixels = 0;
+    for (const Rectangle& region : regions) pixels += region.size();
+    if (pixels > scene.detector().size()) regions = {scene.detector()};
+  }
   if (std::ranges::equal(regions, exposed)) return scene.layout();
   const std::vector<Rectangle> reference =
       reference_regions(regions, scene.detector(), scene.mission().ccd.reference);
@@ -214,7 +228,7 @@ Plan make_plan(const Scene& scene) {
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   plan_jitter(scene, kShares.jitter, moves, plan);
   if (steady) plan_polynomial(scene, kShares.jitter, plan);
-  plan.pixels = describe_pixels(scene);
+  plan.pixels = describe_pixels(scene, plan);
   plan.seconds_per_exposure = predicted_seconds(plan, scene);
   plan.memory_bytes = predicted_memory(plan);
   return plan;

@@ -19,7 +19,9 @@ struct PixelCost {
 };
 constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},      {"dark-current", 0.4},
                                      {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
-                                     {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
+                                     {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5},
+                                     {"flat-field", 0.4},    {"charge-injection", 0.05},
+                                     {"cosmic-rays", 0.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
 constexpr double kRecall = 0.7;    ///< ns a pixel: it is read from where it is kept, if nothing moves
 constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
@@ -37,6 +39,19 @@ struct StarCost {
 constexpr StarCost kAnalytic{.star = 70.0, .row = 5.0, .pixel = 0.1, .broadening = 1.7};
 constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5.0};
 constexpr double kNanosecond = 1e-9;
+
+/// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are cheaper
+/// to move than columns, which are turned first.
+double moving_cost(std::string_view effect, const CcdSettings& ccd) {
+  constexpr double kShift = 0.9;   // range² times
+  constexpr double kSimple = 2.0;  // for each direction
+  constexpr double kTrap = 6.0;    // for each species
+  if (effect == "brighter-fatter") return kShift * ccd.brighter_fatter.range * ccd.brighter_fatter.range;
+  if (effect != "cti") return 0.0;
+  if (ccd.cti.model == CtiModel::kSimple)
+    return (ccd.cti.parallel > 0.0 ? kSimple : 0.0) + (ccd.cti.serial > 0.0 ? 2.0 * kSimple : 0.0);
+  return kTrap * static_cast<double>(ccd.cti.trap_density.size() + ccd.cti.register_density.size());
+}
 
 const StarCost& star_cost(const Plan& plan) {
   return plan.renderer == "analytic" ? kAnalytic : kPrf;
@@ -115,7 +130,7 @@ double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Sc
   if (spec.name == "stars") return kNanosecond * stars_cost(plan, scene);
   for (const PixelCost& cost : kPixelCosts)
     if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels;
-  return 0.0;
+  return kNanosecond * moving_cost(spec.name, scene.mission().ccd) * pixels;
 }
 
 double predicted_seconds(const Plan& plan, const Scene& scene) {
@@ -129,7 +144,8 @@ double predicted_seconds(const Plan& plan, const Scene& scene) {
 
 double predicted_memory(const Plan& plan) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
-  if (plan.runs("full-well")) bytes_per_pixel += sizeof(double);  // drawn electrons, column by column
+  // Drawn electrons, where charge moves from pixel to pixel.
+  if (plan.runs("full-well") || plan.runs("brighter-fatter") || plan.runs("cti")) bytes_per_pixel += sizeof(double);
   constexpr double kStripPlanes = 3.0;                            // expected and drawn electrons, ADU
   return bytes_per_pixel * static_cast<double>(plan.layout->size()) +
          kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);

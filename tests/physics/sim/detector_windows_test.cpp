@@ -41,8 +41,7 @@ ExposureState exposure_of(const Mission& m, std::shared_ptr<const Scene>& scene)
   const Simulator simulator(scene, plan, 0);
   ExposureState state = simulator.make_state();
   simulator.simulate(1, state);
-  std::size_t computed = plan->layout->size();
-  std::printf("%zu px delivered, %zu px computed\n", scene->layout()->size(), computed);
+  std::printf("%zu px delivered, %zu px computed\n", scene->layout()->size(), plan->layout->size());
   return state;
 }
 

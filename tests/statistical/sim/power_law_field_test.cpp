@@ -9,6 +9,7 @@
 #include <numbers>
 #include <vector>
 
+#include "astroid/core/jitter_noise.hpp"
 #include "fourier.hpp"
 
 namespace astroid {
@@ -122,6 +123,45 @@ TEST(PowerLawField, HasTheStatedRmsAndNoMeanOnAnyDetector) {
     const double tolerance = field.cell() == 1 ? 1e-6 : 1e-2;
     EXPECT_NEAR(mean, 0.0, 0.02 * tolerance) << c.columns << " x " << c.rows;
     EXPECT_NEAR(std::sqrt(squares) / 0.02, 1.0, tolerance) << c.columns << " x " << c.rows;
+  }
+}
+
+TEST(FlatField, ScattersFluxesAsPredicted) {
+  // Stars in the middle of pixels all over a field: rms of the mean sensitivity that each sees.
+  constexpr int kField = 512;
+  for (const double sigma : {0.6, 1.0, 2.0}) {
+    std::vector<double> weights;
+    const int half = static_cast<int>(4.0 * sigma) + 1;
+    double sum = 0.0;
+    for (int i = -half; i <= half; ++i) {
+      weights.push_back(std::erf((i + 0.5) / sigma / std::numbers::sqrt2) -
+                        std::erf((i - 0.5) / sigma / std::numbers::sqrt2));
+      sum += weights.back();
+    }
+    double share = 0.0;
+    for (double& w : weights) {
+      w /= sum;
+      share += w * w;  // of one axis; both: the square, whose root is this
+    }
+    for (const double exponent : {0.0, 1.0, 1.5, 3.0}) {
+      const PowerLawField field(stream_of(8), kField, kField, exponent, 0.01);
+      double squares = 0.0;
+      int stars = 0;
+      for (int y = half; y < kField - half; y += 3)
+        for (int x = half; x < kField - half; x += 3) {
+          double seen = 0.0;
+          for (int j = -half; j <= half; ++j)
+            for (int i = -half; i <= half; ++i)
+              seen += weights[static_cast<std::size_t>(i + half)] * weights[static_cast<std::size_t>(j + half)] *
+                      field.at(x + i, y + j);
+          squares += seen * seen;
+          ++stars;
+        }
+      const double predicted = flat_field_static_noise(0.01, exponent, share);
+      std::printf("sigma %.1f px, exponent %.1f: scatter %.5f, predicted %.5f\n", sigma, exponent,
+                  std::sqrt(squares / stars), predicted);
+      EXPECT_NEAR(std::sqrt(squares / stars) / predicted, 1.0, 0.2);
+    }
   }
 }
 

@@ -19,7 +19,7 @@ class BoundaryShifts {
   /// @param parallel  of boundaries between rows, px/e-.
   /// @param decay     1/px, > 0.
   /// @param range     charge more than this many pixels from a boundary is left out; 1 .. 16.
-  /// @source Guyonnet2015, Eq. 18 for the smooth model.
+  /// @source Guyonnet2015 for the smooth model.
   BoundaryShifts(double serial, double parallel, double decay, int range);
 
   [[nodiscard]] int range() const { return range_; }
@@ -50,7 +50,7 @@ class BoundaryShifts {
 /// A pixel depends on those within range() in x and y.
 /// @valid       0 .. full well: where shifts are small against 1.
 /// @complexity  O(pixels x range²) (bench: BM_BrighterFatter)  @rng none  @thread safe
-/// @source      Guyonnet2015, Eq. 11.
+/// @source      Guyonnet2015.
 std::int64_t brighter_fatter(const ImageView<double, unit::SampledElectrons>& electrons, const BoundaryShifts& shifts);
 
 }  // namespace astroid

@@ -30,7 +30,7 @@ int trail_length(double loss, int transfers);
 /// A packet's result depends on the trail_length() packets before it only, so a part of a chain that begins that far
 /// ahead has the same bits.
 /// @complexity O(pixels x trail length), 4 packets behind 4510 transfers of loss 1e-6  @rng none  @thread safe
-/// @source Janesick2001; SCIENCE F36.
+/// @source Janesick2001 (F36).
 double transfer(const TransferChain& chain, double loss);
 
 /// One kind of lattice defect that holds electrons back.

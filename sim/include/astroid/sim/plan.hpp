@@ -57,7 +57,7 @@ struct Plan {
   PlanKnobs knobs;
   std::string renderer;                       ///< analytic or prf
   std::string pixels;                         ///< full frame, sub-field or windows, and what is exact
-  std::shared_ptr<const PixelLayout> layout;  ///< the computed pixels: exposed region r holds the scene's region r, and more
+  std::shared_ptr<const PixelLayout> layout;  ///< the computed pixels: exposed region r holds the scene's region r, or one all of them
   bool still = false;                         ///< exposures share a noiseless image
   std::int64_t epoch_exposures = 0;           ///< exposures that share the slow conditions; 0: all of them
   int reads = 1;                              ///< non-destructive reads of an exposure
