@@ -32,6 +32,13 @@ struct AssessOptions {
 int assess(const AssessOptions& options);
 int simulate(const AssessOptions& options);
 
+struct FocalPlaneCommand {
+  AssessOptions run;
+  int across = 3, down = 3, side = 200;
+  std::optional<double> magnitude;
+};
+int focal_plane(const FocalPlaneCommand& options);
+
 struct PlanOptions {
   ConfigurationOptions configuration;
   bool json = false;
@@ -91,6 +98,7 @@ int field(const FieldOptions& options);
 int init(const std::string& mission, const std::string& output, bool overwrite);
 int validate(const ConfigurationOptions& options, bool schema);
 int explain(const std::string& parameter);
-int doctor();
+/// @param calibrate  measures the machine and keeps what it finds.
+int doctor(bool calibrate);
 
 }  // namespace astroid::commands
