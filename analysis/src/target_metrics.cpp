@@ -106,9 +106,9 @@ TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estima
   target.crowdsap = 1.0 - estimator.spr_total;
   target.flfrcsap = estimator.enclosed_fraction;
   target.flux_expected = estimator.budget.target + estimator.budget.contaminants;
-  const double fixed = std::sqrt(square(setup.prnu * estimator.prnu_static) +
-                                 square(flat_field_static_noise(setup.flat_field, setup.flat_field_exponent,
-                                                                estimator.prnu_static)));
+  const double fixed =
+      std::sqrt(square(setup.prnu * estimator.prnu_static) +
+                square(flat_field_static_noise(setup.flat_field, setup.flat_field_exponent, estimator.prnu_static)));
   target.prnu_magnitude =
       kPogson * fixed * (1.0 - estimator.spr_total) / std::sqrt(static_cast<double>(setup.simulated_cameras));
   target.neighbour_magnitude = kPogson * std::sqrt(estimator.budget.var_neighbour_doubt) / estimator.budget.target;

@@ -34,8 +34,7 @@ BloomReach::BloomReach(const Scene& scene) : detector_(scene.detector()) {
 Rectangle BloomReach::support(const Rectangle& region) const {
   Rectangle all = region;
   for (int x = region.x0; x < region.x1(); x += kColumnsAtOnce) {
-    const Rectangle some =
-        support_of_columns({x, region.y0, std::min(kColumnsAtOnce, region.x1() - x), region.ny});
+    const Rectangle some = support_of_columns({x, region.y0, std::min(kColumnsAtOnce, region.x1() - x), region.ny});
     const int y0 = std::min(all.y0, some.y0);
     all.ny = std::max(all.y1(), some.y1()) - y0;
     all.y0 = y0;
@@ -46,9 +45,8 @@ Rectangle BloomReach::support(const Rectangle& region) const {
 Rectangle BloomReach::support_of_columns(const Rectangle& region) const {
   if (room_ <= 0.0) return {region.x0, detector_.y0, region.nx, detector_.ny};
   std::vector<Source> near;
-  std::ranges::copy_if(sources_, std::back_inserter(near), [&](const Source& s) {
-    return s.x >= region.x0 - width_ && s.x <= region.x1() - 1 + width_;
-  });
+  std::ranges::copy_if(sources_, std::back_inserter(near),
+                       [&](const Source& s) { return s.x >= region.x0 - width_ && s.x <= region.x1() - 1 + width_; });
   double first = region.y0;
   double last = region.y1() - 1;
   for (std::size_t i = 0; i < near.size(); ++i) {

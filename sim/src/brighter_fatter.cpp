@@ -66,7 +66,9 @@ class Originals {
 class Crossings {
  public:
   Crossings(int nx, const BoundaryShifts& shifts)
-      : nx_(nx), shifts_(shifts), sums_(static_cast<std::size_t>(nx + 2 * shifts.range())),
+      : nx_(nx),
+        shifts_(shifts),
+        sums_(static_cast<std::size_t>(nx + 2 * shifts.range())),
         moved_(static_cast<std::size_t>(nx)) {}
 
   /// From the pixels of row y to the next in x. @returns boundaries cut
@@ -153,8 +155,7 @@ BoundaryShifts::BoundaryShifts(double serial, double parallel, double decay, int
   }
 }
 
-std::int64_t brighter_fatter(const ImageView<double, unit::SampledElectrons>& electrons,
-                             const BoundaryShifts& shifts) {
+std::int64_t brighter_fatter(const ImageView<double, unit::SampledElectrons>& electrons, const BoundaryShifts& shifts) {
   const Rectangle& area = electrons.area();
   if (area.empty()) return 0;
   const int range = shifts.range();

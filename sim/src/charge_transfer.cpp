@@ -61,10 +61,10 @@ double sum(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0);
 }
 
-constexpr double kBoltzmann = 1.380649e-23;          // J/K, exact (SI 2019)
-constexpr double kElectronMass = 9.1093837015e-31;   // kg (CODATA 2018)
-constexpr double kEffectiveMass = 0.5;               // of a conduction electron in silicon, in electron masses
-constexpr double kPacketDepth = 1e-6;                // m (Short2013: the charge lies in a layer 1 µm deep)
+constexpr double kBoltzmann = 1.380649e-23;         // J/K, exact (SI 2019)
+constexpr double kElectronMass = 9.1093837015e-31;  // kg (CODATA 2018)
+constexpr double kEffectiveMass = 0.5;              // of a conduction electron in silicon, in electron masses
+constexpr double kPacketDepth = 1e-6;               // m (Short2013: the charge lies in a layer 1 µm deep)
 constexpr double kMetresPerMicrometre = 1e-6;
 
 /// What a packet after `transfers` transfers meets of a species.

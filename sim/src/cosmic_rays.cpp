@@ -14,7 +14,7 @@ namespace astroid {
 
 namespace {
 
-constexpr double kHalf = 0.5;               // a pixel begins half a pixel before its centre
+constexpr double kHalf = 0.5;                      // a pixel begins half a pixel before its centre
 constexpr double kMoyalMean = 1.2703628454614782;  // Euler's constant + ln 2
 constexpr double kMoyalVariance = 0.5 * std::numbers::pi * std::numbers::pi;
 
@@ -33,7 +33,9 @@ class TileWords {
 
  private:
   static constexpr unsigned kReadShift = 16;
-  [[nodiscard]] RandomWords at(std::uint32_t draw) const { return philox4x32(stream_, {x_, y_, exposure_, read_ | draw}); }
+  [[nodiscard]] RandomWords at(std::uint32_t draw) const {
+    return philox4x32(stream_, {x_, y_, exposure_, read_ | draw});
+  }
   const RandomStream& stream_;
   std::uint32_t x_;
   std::uint32_t y_;
@@ -83,8 +85,8 @@ double charge_of_particle(const CosmicRayModel& model, const RandomWords& track,
   const double shape = model.charge_shape;
   const double delta = shape / det::sqrt(1.0 + shape * shape);
   const double rest = 1.0 / det::sqrt(1.0 + shape * shape);
-  return std::max(0.0, model.charge_location +
-                           model.charge_scale * (delta * std::abs(first) + rest * standard_normal(words[1])));
+  return std::max(
+      0.0, model.charge_location + model.charge_scale * (delta * std::abs(first) + rest * standard_normal(words[1])));
 }
 
 int tile_of(int pixel) {
@@ -95,15 +97,15 @@ int tile_of(int pixel) {
 bool may_meet(const CosmicRay& ray, const Rectangle& area) {
   constexpr double kMargin = 0.5;  // px
   const auto meets = [](double from, double shift, int begin, int end) {
-    return std::max(from, from + shift) >= begin - kHalf - kMargin && std::min(from, from + shift) <= end - kHalf + kMargin;
+    return std::max(from, from + shift) >= begin - kHalf - kMargin &&
+           std::min(from, from + shift) <= end - kHalf + kMargin;
   };
   return meets(ray.entry.x, ray.track.dx, area.x0, area.x1()) && meets(ray.entry.y, ray.track.dy, area.y0, area.y1());
 }
 
 /// One coordinate of a walk from pixel to pixel along a track, which is gone through from 0 to 1.
 struct Walk {
-  Walk(double from, double shift)
-      : pixel(static_cast<int>(std::floor(from + kHalf))), step(shift < 0.0 ? -1 : 1) {
+  Walk(double from, double shift) : pixel(static_cast<int>(std::floor(from + kHalf))), step(shift < 0.0 ? -1 : 1) {
     if (shift == 0.0) return;
     const double border = shift > 0.0 ? pixel + kHalf : pixel - kHalf;
     next = (border - from) / shift;
@@ -158,7 +160,7 @@ std::vector<CosmicRay> cosmic_rays_of_tile(const CosmicRayModel& model, const Ra
 }
 
 double leave_track(const CosmicRay& ray, const ImageView<double, unit::SampledElectrons>& electrons,
-             const ImageView<std::uint8_t, unit::Flags>* flags) {
+                   const ImageView<std::uint8_t, unit::Flags>* flags) {
   Walk x(ray.entry.x, ray.track.dx);
   Walk y(ray.entry.y, ray.track.dy);
   double left = 0.0;

@@ -36,12 +36,12 @@ struct Table {
   }
 };
 
-using CcdTable = Table<JitterModelEffect, JitterFileEffect,         // Pointing
-                       Stars,                                       // Optics
-                       Sky,                                         // Sky
-                       FlatField, Prnu, DarkCurrent, ChargeInjection,  // PixelMean
+using CcdTable = Table<JitterModelEffect, JitterFileEffect,                     // Pointing
+                       Stars,                                                   // Optics
+                       Sky,                                                     // Sky
+                       FlatField, Prnu, DarkCurrent, ChargeInjection,           // PixelMean
                        PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,  // PixelSample
-                       ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout
+                       ReadoutNoise, GainEffect, BiasEffect, Adc>;              // Readout
 
 }  // namespace
 

@@ -93,10 +93,18 @@ void FourierTransform::transform(std::vector<double>& real, std::vector<double>&
   std::size_t stride = 1;
   for (const int radix : factors_) {
     switch (radix) {
-      case 2: pass<2>(length, stride); break;
-      case 3: pass<3>(length, stride); break;
-      case 4: pass<4>(length, stride); break;
-      default: pass<5>(length, stride); break;
+      case 2:
+        pass<2>(length, stride);
+        break;
+      case 3:
+        pass<3>(length, stride);
+        break;
+      case 4:
+        pass<4>(length, stride);
+        break;
+      default:
+        pass<5>(length, stride);
+        break;
     }
     length /= static_cast<std::size_t>(radix);
     stride *= static_cast<std::size_t>(radix);

@@ -129,8 +129,8 @@ std::string describe_delivered(const Scene& scene) {
 std::string describe_pixels(const Scene& scene, const Plan& plan) {
   std::string text = describe_delivered(scene);
   if (plan.layout != scene.layout())
-    text += fmt::format("; {} px are computed, since charge and light of those outside reach them",
-                        plan.layout->size());
+    text +=
+        fmt::format("; {} px are computed, since charge and light of those outside reach them", plan.layout->size());
   return text;
 }
 
@@ -179,8 +179,7 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
     if (pixels > scene.detector().size()) regions = {scene.detector()};
   }
   if (std::ranges::equal(regions, exposed)) return scene.layout();
-  const std::vector<Rectangle> reference =
-      reference_regions(regions, scene.detector(), scene.mission().ccd.reference);
+  const std::vector<Rectangle> reference = reference_regions(regions, scene.detector(), scene.mission().ccd.reference);
   return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 

@@ -17,10 +17,17 @@ struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
-constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},      {"dark-current", 0.4},
-                                     {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
-                                     {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5},
-                                     {"flat-field", 0.4},    {"charge-injection", 0.05},
+constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},
+                                     {"prnu", 0.4},
+                                     {"dark-current", 0.4},
+                                     {"photon-noise", 2.55},
+                                     {"full-well", 0.3},
+                                     {"readout-noise", 1.45},
+                                     {"gain", 0.15},
+                                     {"bias", 0.1},
+                                     {"adc", 0.5},
+                                     {"flat-field", 0.4},
+                                     {"charge-injection", 0.05},
                                      {"cosmic-rays", 0.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
 constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
@@ -39,8 +46,8 @@ constexpr StarCost kAnalytic{.star = 70.0, .row = 5.0, .pixel = 0.1, .broadening
 constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5.0};
 constexpr double kNanosecond = 1e-9;
 
-/// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are cheaper
-/// to move than columns, which are turned first.
+/// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are
+/// cheaper to move than columns, which are turned first.
 double moving_cost(std::string_view effect, const CcdSettings& ccd) {
   constexpr double kShift = 0.9;   // range² times
   constexpr double kSimple = 2.0;  // for each direction
@@ -154,7 +161,7 @@ double predicted_memory(const Plan& plan) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
   // Drawn electrons, where charge moves from pixel to pixel.
   if (plan.runs("full-well") || plan.runs("brighter-fatter") || plan.runs("cti")) bytes_per_pixel += sizeof(double);
-  constexpr double kStripPlanes = 3.0;                            // expected and drawn electrons, ADU
+  constexpr double kStripPlanes = 3.0;  // expected and drawn electrons, ADU
   return bytes_per_pixel * static_cast<double>(plan.layout->size()) +
          kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);
 }

@@ -43,8 +43,8 @@ void BM_ChargeTransfer(benchmark::State& state, double loss) {
   for (auto _ : state) benchmark::DoNotOptimize(transfer(chain, loss));
   count_pixels(state);
 }
-BENCHMARK_CAPTURE(BM_ChargeTransfer, loss_1e-6, 1e-6)->Unit(benchmark::kMillisecond);
-BENCHMARK_CAPTURE(BM_ChargeTransfer, loss_1e-4, 1e-4)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_ChargeTransfer, loss_1e - 6, 1e-6)->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(BM_ChargeTransfer, loss_1e - 4, 1e-4)->Unit(benchmark::kMillisecond);
 
 void BM_Traps(benchmark::State& state) {
   auto image = frame();

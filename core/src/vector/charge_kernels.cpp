@@ -39,8 +39,8 @@ HWY_INLINE Double log_of(Double x) {
   const auto biased = hn::ShiftRight<charge_fits::kMantissaBits>(shifted);
   const Double exponent = hn::Sub(hn::BitCast(d, hn::Add(biased, hn::Set(u, charge_fits::kRounderBits))),
                                   hn::Set(d, charge_fits::kRounder + charge_fits::kExponentBias));
-  const Double mantissa = hn::BitCast(d, hn::Add(hn::And(shifted, hn::Set(u, charge_fits::kMantissaMask)),
-                                                 hn::Set(u, charge_fits::kSqrtHalfBits)));
+  const Double mantissa = hn::BitCast(
+      d, hn::Add(hn::And(shifted, hn::Set(u, charge_fits::kMantissaMask)), hn::Set(u, charge_fits::kSqrtHalfBits)));
   const Double one = hn::Set(d, 1.0);
   const Double s = hn::Div(hn::Sub(mantissa, one), hn::Add(mantissa, one));
   return hn::Add(hn::Mul(exponent, hn::Set(d, charge_fits::kLn2)),
@@ -54,10 +54,10 @@ HWY_INLINE Double exp_of(Double x) {
   const Double rounder = hn::Set(d, charge_fits::kRounder);
   const Double shifted = hn::Add(hn::Mul(x, hn::Set(d, charge_fits::kLog2E)), rounder);
   const Double k = hn::Sub(shifted, rounder);
-  const Double r = hn::Sub(hn::Sub(x, hn::Mul(k, hn::Set(d, charge_fits::kLn2High))),
-                           hn::Mul(k, hn::Set(d, charge_fits::kLn2Low)));
-  const auto scale = hn::Add(hn::ShiftLeft<charge_fits::kMantissaBits>(hn::BitCast(u, shifted)),
-                             hn::Set(u, charge_fits::kOneBits));
+  const Double r =
+      hn::Sub(hn::Sub(x, hn::Mul(k, hn::Set(d, charge_fits::kLn2High))), hn::Mul(k, hn::Set(d, charge_fits::kLn2Low)));
+  const auto scale =
+      hn::Add(hn::ShiftLeft<charge_fits::kMantissaBits>(hn::BitCast(u, shifted)), hn::Set(u, charge_fits::kOneBits));
   return hn::Mul(polynomial(r, charge_fits::kExp), hn::BitCast(d, scale));
 }
 

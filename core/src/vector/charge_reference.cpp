@@ -23,10 +23,9 @@ double polynomial(double x, const std::array<double, N>& coefficient) {
 double log_of(double x) {
   const std::uint64_t shifted = std::bit_cast<std::uint64_t>(x) + (charge_fits::kOneBits - charge_fits::kSqrtHalfBits);
   const std::uint64_t biased = shifted >> charge_fits::kMantissaBits;
-  const double exponent = std::bit_cast<double>(biased + charge_fits::kRounderBits) -
-                          (charge_fits::kRounder + charge_fits::kExponentBias);
-  const auto mantissa =
-      std::bit_cast<double>((shifted & charge_fits::kMantissaMask) + charge_fits::kSqrtHalfBits);
+  const double exponent =
+      std::bit_cast<double>(biased + charge_fits::kRounderBits) - (charge_fits::kRounder + charge_fits::kExponentBias);
+  const auto mantissa = std::bit_cast<double>((shifted & charge_fits::kMantissaMask) + charge_fits::kSqrtHalfBits);
   const double s = (mantissa - 1.0) / (mantissa + 1.0);
   return exponent * charge_fits::kLn2 + s * polynomial(s * s, charge_fits::kLog);
 }

@@ -44,11 +44,12 @@ EffectNeed CosmicRays::is_needed(const SceneSummary& scene) const {
   const double least_variance = scene.faintest_target_electrons + scene.pixel_noise_variance - scene.background;
   const double variance = hits * (charge.mean * charge.mean + charge.variance);
   const double variance_ratio = least_variance > 0.0 ? variance / least_variance : 1.0;
-  return {bias > scene.tightest_tolerance() || variance_ratio > kVarianceTolerance,
-          fmt::format("{:.3g} particles of {:.4g} e- hit a pixel in a cycle, which gives an aperture up to {:.3g} e- an "
-                      "exposure; the tightest flux tolerance is {:.3g} e-",
-                      model.hits_per_pixel, charge.mean, bias, scene.tightest_tolerance()),
-          bias, variance_ratio};
+  return {
+      bias > scene.tightest_tolerance() || variance_ratio > kVarianceTolerance,
+      fmt::format("{:.3g} particles of {:.4g} e- hit a pixel in a cycle, which gives an aperture up to {:.3g} e- an "
+                  "exposure; the tightest flux tolerance is {:.3g} e-",
+                  model.hits_per_pixel, charge.mean, bias, scene.tightest_tolerance()),
+      bias, variance_ratio};
 }
 
 void CosmicRays::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
@@ -58,9 +59,8 @@ void CosmicRays::apply(ExposureState& state, const EffectContext& context, const
   const CosmicTime time{static_cast<std::uint32_t>(state.exposure), static_cast<std::uint16_t>(state.read)};
   for (std::size_t a = 0; a < strip.areas.size(); ++a) {
     const auto electrons = state.sampled.view(strip, a);
-    const ImageView<std::uint8_t, unit::Flags> flags{
-        state.computed().flags.pixels().data() + strip.area_begins[a], strip.areas[a],
-        static_cast<std::size_t>(strip.areas[a].nx)};
+    const ImageView<std::uint8_t, unit::Flags> flags{state.computed().flags.pixels().data() + strip.area_begins[a],
+                                                     strip.areas[a], static_cast<std::size_t>(strip.areas[a].nx)};
     add_cosmic_rays(model, context.stream, time, electrons, &flags);
   }
 }

@@ -118,15 +118,17 @@ EffectNeed Cti::is_needed(const SceneSummary& scene) const {
       if (cti.parallel <= 0.0 && cti.serial <= 0.0)
         return {false, "no charge is lost in transfers (CTI/Parallel and Serial 0)", 0.0, 0.0};
       const double share = std::min(1.0, cti.parallel * ccd.rows + cti.serial * ccd.columns);
-      return moved_charge_need(scene, share, fmt::format("a loss of {:.3g} at each of {} transfers between rows and {:.3g} "
-                                                         "at each of {} between columns",
-                                                         cti.parallel, ccd.rows, cti.serial, ccd.columns));
+      return moved_charge_need(scene, share,
+                               fmt::format("a loss of {:.3g} at each of {} transfers between rows and {:.3g} "
+                                           "at each of {} between columns",
+                                           cti.parallel, ccd.rows, cti.serial, ccd.columns));
     }
     case CtiModel::kTraps: {
-      const double traps = 2.0 / (1.0 + cti.beta) *
-                           (sum(cti.trap_density) * ccd.rows + sum(cti.register_density) * ccd.columns);
+      const double traps =
+          2.0 / (1.0 + cti.beta) * (sum(cti.trap_density) * ccd.rows + sum(cti.register_density) * ccd.columns);
       if (traps <= 0.0) return {false, "no trap holds charge back (CTI/TrapDensity 0)", 0.0, 0.0};
-      // Every trap on the way takes an electron, or gives one back, in every pixel; few electrons lose the most of them.
+      // Every trap on the way takes an electron, or gives one back, in every pixel; few electrons lose the most of
+      // them.
       const double bias = traps * scene.aperture_pixels;
       const double least = scene.faintest_target_electrons + scene.background;
       const double variance_ratio = least > 0.0 ? 2.0 * std::min(1.0, bias / least) : 1.0;
@@ -161,8 +163,7 @@ void Cti::apply(ExposureState& state, const EffectContext& context, const Strip&
   locate(sources_of(context.scene), pixels);
   const auto move = [&](const MoveChain& rows, const MoveChain& columns) {
     if (rows) state.lost_electrons += move_rows(pixels, rows);
-    if (columns)
-      state.lost_electrons += move_columns(pixels, middle_of(ccd), ccd.reference.prescan, columns);
+    if (columns) state.lost_electrons += move_columns(pixels, middle_of(ccd), ccd.reference.prescan, columns);
   };
   if (ccd.cti.model == CtiModel::kSimple) {
     const auto losing = [](double loss) -> MoveChain {

@@ -5,8 +5,8 @@
 
 namespace astroid {
 
-/// Multiplies by a fixed pattern with a power-law spatial spectrum, mean 1, never below 0 (F62). It is that of the whole
-/// detector, whichever part is computed.
+/// Multiplies by a fixed pattern with a power-law spatial spectrum, mean 1, never below 0 (F62). It is that of the
+/// whole detector, whichever part is computed.
 class FlatField final : public Effect {
  public:
   static constexpr EffectSpec kSpec{.name = "flat-field",

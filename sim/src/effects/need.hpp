@@ -11,7 +11,8 @@ namespace astroid {
 /// as much variance.
 EffectNeed background_need(const SceneSummary& scene, double level, std::string_view what);
 
-/// Need of a fixed pattern of sensitivity of `rms`, relative: it changes fluxes by up to that, and more where stars move.
+/// Need of a fixed pattern of sensitivity of `rms`, relative: it changes fluxes by up to that, and more where stars
+/// move.
 EffectNeed response_need(const SceneSummary& scene, double rms, std::string_view what);
 
 /// Need of what moves a share of the charge of any pixel to other pixels: no aperture changes by more than that share

@@ -25,7 +25,8 @@ Electrons2d star(double electrons, double background) {
   Electrons2d image(31, 31);
   for (int y = 0; y < 31; ++y)
     for (int x = 0; x < 31; ++x)
-      image.at(x, y) = background + electrons / 10.0 * std::exp(-0.5 * ((x - 15.0) * (x - 15.0) + (y - 15.0) * (y - 15.0)) / 1.6);
+      image.at(x, y) =
+          background + electrons / 10.0 * std::exp(-0.5 * ((x - 15.0) * (x - 15.0) + (y - 15.0) * (y - 15.0)) / 1.6);
   return image;
 }
 
@@ -149,8 +150,8 @@ TEST(BrighterFatter, BendsThePhotonTransferCurve) {
         for (int x = 6; x < 15; ++x) squares += (unit_charge.at(x, y) - mean) * (unit_charge.at(x, y) - mean);
     }
     const double error = std::sqrt(2.0 / n);
-    std::printf("mean %.0f e-: variance / mean %.4f, expected %.4f (z %.2f), first order %.4f; with covariances %.3f\n", mean,
-                variance / mean, squares, (variance / mean / squares - 1.0) / error,
+    std::printf("mean %.0f e-: variance / mean %.4f, expected %.4f (z %.2f), first order %.4f; with covariances %.3f\n",
+                mean, variance / mean, squares, (variance / mean / squares - 1.0) / error,
                 1.0 + shifts.photon_transfer_slope() * mean, all / mean);
     EXPECT_NEAR(variance / mean / squares, 1.0, 5.0 * error);
     EXPECT_NEAR(1.0 - squares, -shifts.photon_transfer_slope() * mean, 0.2 * (1.0 - squares) + 1e-6);

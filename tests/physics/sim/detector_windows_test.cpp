@@ -100,46 +100,47 @@ TEST_P(DetectorWindows, HaveTheBitsOfTheFullFrame) {
 
 INSTANTIATE_TEST_SUITE_P(
     Effects, DetectorWindows,
-    testing::Values(
-        Case{"Blooming", [](Mission&) {}},
-        Case{"BloomingOnChargeInjection",
-             [](Mission& m) { m.ccd.charge_injection = {.every_rows = 20, .first_row = 5, .level = Electrons(2e4)}; }},
-        Case{"SimpleCti",
-             [](Mission& m) {
-               m.ccd.cti.model = CtiModel::kSimple;
-               m.ccd.cti.parallel = 3e-4;
-               m.ccd.cti.serial = 2e-4;
-             }},
-        Case{"SerialCtiAlone",
-             [](Mission& m) {
-               m.ccd.cti.model = CtiModel::kSimple;
-               m.ccd.cti.serial = 2e-3;
-             }},
-        Case{"SimpleCtiThroughTwoNodes",
-             [](Mission& m) {
-               m.ccd.cti.model = CtiModel::kSimple;
-               m.ccd.cti.parallel = 1e-5;
-               m.ccd.cti.serial = 2e-4;
-               m.ccd.nodes.count = 2;
-             }},
-        Case{"Traps",
-             [](Mission& m) {
-               m.ccd.cti.model = CtiModel::kTraps;
-               m.ccd.cti.trap_density = {4.9, 6.62};
-               m.ccd.cti.register_density = {0.5, 0.1};
-               m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
-               m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
-             }},
-        Case{"Everything",
-             [](Mission& m) {
-               m.ccd.flat_field.rms = 0.01;
-               m.ccd.charge_injection = {.every_rows = 30, .first_row = 5, .level = Electrons(2e3)};
-               m.ccd.cosmic_rays.rate = 200.0;
-               m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 4e-7, .decay = 0.5, .range = 3};
-               m.ccd.cti.model = CtiModel::kSimple;
-               m.ccd.cti.parallel = 1e-5;
-               m.ccd.cti.serial = 1e-5;
-             }}),
+    testing::Values(Case{"Blooming", [](Mission&) {}},
+                    Case{"BloomingOnChargeInjection",
+                         [](Mission& m) {
+                           m.ccd.charge_injection = {.every_rows = 20, .first_row = 5, .level = Electrons(2e4)};
+                         }},
+                    Case{"SimpleCti",
+                         [](Mission& m) {
+                           m.ccd.cti.model = CtiModel::kSimple;
+                           m.ccd.cti.parallel = 3e-4;
+                           m.ccd.cti.serial = 2e-4;
+                         }},
+                    Case{"SerialCtiAlone",
+                         [](Mission& m) {
+                           m.ccd.cti.model = CtiModel::kSimple;
+                           m.ccd.cti.serial = 2e-3;
+                         }},
+                    Case{"SimpleCtiThroughTwoNodes",
+                         [](Mission& m) {
+                           m.ccd.cti.model = CtiModel::kSimple;
+                           m.ccd.cti.parallel = 1e-5;
+                           m.ccd.cti.serial = 2e-4;
+                           m.ccd.nodes.count = 2;
+                         }},
+                    Case{"Traps",
+                         [](Mission& m) {
+                           m.ccd.cti.model = CtiModel::kTraps;
+                           m.ccd.cti.trap_density = {4.9, 6.62};
+                           m.ccd.cti.register_density = {0.5, 0.1};
+                           m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
+                           m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
+                         }},
+                    Case{"Everything",
+                         [](Mission& m) {
+                           m.ccd.flat_field.rms = 0.01;
+                           m.ccd.charge_injection = {.every_rows = 30, .first_row = 5, .level = Electrons(2e3)};
+                           m.ccd.cosmic_rays.rate = 200.0;
+                           m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 4e-7, .decay = 0.5, .range = 3};
+                           m.ccd.cti.model = CtiModel::kSimple;
+                           m.ccd.cti.parallel = 1e-5;
+                           m.ccd.cti.serial = 1e-5;
+                         }}),
     [](const testing::TestParamInfo<Case>& parameter) { return parameter.param.name; });
 
 }  // namespace

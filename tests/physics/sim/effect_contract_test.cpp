@@ -93,10 +93,7 @@ std::vector<test::EffectScene> scenes() {
           },
           [](Mission& m) { m.ccd.cti.parallel = m.ccd.cti.serial = 0.0; }),
       scene(
-          "full-well",
-          [](Mission& m) {
-            m.ccd.full_well = Electrons(60000.0);
-          },
+          "full-well", [](Mission& m) { m.ccd.full_well = Electrons(60000.0); },
           [](Mission& m) { m.ccd.full_well = Electrons(1e12); }),
       scene("readout-noise", {}, [](Mission& m) { m.ccd.readout_noise = Electrons(0.0); }),
       scene("gain", {}, {}),

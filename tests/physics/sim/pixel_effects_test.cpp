@@ -148,8 +148,8 @@ TEST(Cti, ShowsInTheOverscanOfAFlatField) {
   // S (1 - (1-e)^N) (1-e), N = 300 rows, and 300 columns behind 3 of the prescan.
   const double rows = 2e4 * -std::expm1(300.0 * std::log1p(-2e-5));
   const double columns = 2e4 * -std::expm1(300.0 * std::log1p(-1e-5));
-  std::printf("first overscan row %.2f of %.2f e-, first overscan column %.2f of %.2f e-\n", first_row, rows, first_column,
-              columns);
+  std::printf("first overscan row %.2f of %.2f e-, first overscan column %.2f of %.2f e-\n", first_row, rows,
+              first_column, columns);
   EXPECT_NEAR(first_row, rows, 0.03 * rows);
   EXPECT_NEAR(first_column, columns, 0.03 * columns);
 }

@@ -107,8 +107,8 @@ TEST_P(SkippedPixelEffect, MovesNoFluxBeyondItsTolerance) {
     worst_bias = std::max(worst_bias, std::abs(mean[i]) / p.scene->summary().flux_tolerance(flux));
     worst_variance = std::max(worst_variance, square[i] / (flux + 36.0 * 400.0));
   }
-  std::printf("%s at %.3g: moves a mean flux by at most %.2g of its tolerance, adds %.2g of its variance\n", c.effect, low,
-              worst_bias, worst_variance);
+  std::printf("%s at %.3g: moves a mean flux by at most %.2g of its tolerance, adds %.2g of its variance\n", c.effect,
+              low, worst_bias, worst_variance);
   EXPECT_LE(worst_bias, 1.0);
   EXPECT_LE(worst_variance, kVarianceTolerance);
   const bool rare = std::string(c.effect) == "cosmic-rays";
@@ -117,31 +117,31 @@ TEST_P(SkippedPixelEffect, MovesNoFluxBeyondItsTolerance) {
 
 INSTANTIATE_TEST_SUITE_P(
     Effects, SkippedPixelEffect,
-    testing::Values(SkipCase{"flat-field", [](Mission& m, double v) { m.ccd.flat_field.rms = v; }, 0.1},
-                    SkipCase{"charge-injection",
-                             [](Mission& m, double v) {
-                               m.ccd.charge_injection.every_rows = 4;
-                               m.ccd.charge_injection.level = Electrons(v);
-                             },
-                             1e3},
-                    SkipCase{"cosmic-rays", [](Mission& m, double v) { m.ccd.cosmic_rays.rate = v; }, 100.0},
-                    SkipCase{"brighter-fatter",
-                             [](Mission& m, double v) { m.ccd.brighter_fatter.serial = m.ccd.brighter_fatter.parallel = v; },
-                             1e-6},
-                    SkipCase{"cti",
-                             [](Mission& m, double v) {
-                               m.ccd.cti.model = CtiModel::kSimple;
-                               m.ccd.cti.parallel = m.ccd.cti.serial = v;
-                             },
-                             1e-4},
-                    SkipCase{"cti",
-                             [](Mission& m, double v) {
-                               m.ccd.cti.model = CtiModel::kTraps;
-                               m.ccd.cti.trap_density = {v};
-                               m.ccd.cti.trap_cross_section = {1e-15};
-                               m.ccd.cti.trap_release_time = {1.0};
-                             },
-                             1.0}),
+    testing::Values(
+        SkipCase{"flat-field", [](Mission& m, double v) { m.ccd.flat_field.rms = v; }, 0.1},
+        SkipCase{"charge-injection",
+                 [](Mission& m, double v) {
+                   m.ccd.charge_injection.every_rows = 4;
+                   m.ccd.charge_injection.level = Electrons(v);
+                 },
+                 1e3},
+        SkipCase{"cosmic-rays", [](Mission& m, double v) { m.ccd.cosmic_rays.rate = v; }, 100.0},
+        SkipCase{"brighter-fatter",
+                 [](Mission& m, double v) { m.ccd.brighter_fatter.serial = m.ccd.brighter_fatter.parallel = v; }, 1e-6},
+        SkipCase{"cti",
+                 [](Mission& m, double v) {
+                   m.ccd.cti.model = CtiModel::kSimple;
+                   m.ccd.cti.parallel = m.ccd.cti.serial = v;
+                 },
+                 1e-4},
+        SkipCase{"cti",
+                 [](Mission& m, double v) {
+                   m.ccd.cti.model = CtiModel::kTraps;
+                   m.ccd.cti.trap_density = {v};
+                   m.ccd.cti.trap_cross_section = {1e-15};
+                   m.ccd.cti.trap_release_time = {1.0};
+                 },
+                 1.0}),
     [](const testing::TestParamInfo<SkipCase>& parameter) {
       std::string name = parameter.param.effect;
       std::erase(name, '-');

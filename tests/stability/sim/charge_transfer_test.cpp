@@ -49,8 +49,8 @@ TEST(ChargeTransfer, HasTheWholeTrailOfTheLogGammaFunction) {
     for (std::size_t k = 0; k < column.size(); ++k) {
       const double n = c.transfers;
       const double kk = static_cast<double>(k);
-      const double log_share = std::lgamma(n + kk) - std::lgamma(kk + 1.0) - std::lgamma(n) + kk * std::log(e) +
-                               n * std::log1p(-e);
+      const double log_share =
+          std::lgamma(n + kk) - std::lgamma(kk + 1.0) - std::lgamma(n) + kk * std::log(e) + n * std::log1p(-e);
       const double share = std::exp(log_share);
       if (share > 1e-12) {
         // What lgamma of large numbers leaves of 16 digits.

@@ -27,7 +27,8 @@ std::vector<double> power_of(const PowerLawField& field) {
   std::vector<double> imaginary(kSide * kSide);
   const auto transpose = [](std::vector<double>& values) {
     for (int y = 0; y < kSide; ++y)
-      for (int x = 0; x < y; ++x) std::swap(values[static_cast<std::size_t>(y * kSide + x)], values[static_cast<std::size_t>(x * kSide + y)]);
+      for (int x = 0; x < y; ++x)
+        std::swap(values[static_cast<std::size_t>(y * kSide + x)], values[static_cast<std::size_t>(x * kSide + y)]);
   };
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide; ++x) real[static_cast<std::size_t>(y * kSide + x)] = field.at(x, y);

@@ -42,8 +42,8 @@ class BoundaryShifts {
 /// Moves charge across pixel boundaries as collected charge shifts them.
 ///
 /// Across the boundary X of pixel 0 goes (Q_0 + Q_X) / 4 times the sum of a_i Q_i over the pixels on its side minus
-/// that over those on the other. What one pixel gives its neighbour gets, so charge is conserved; none leaves the image,
-/// and none comes from outside.
+/// that over those on the other. What one pixel gives its neighbour gets, so charge is conserved; none leaves the
+/// image, and none comes from outside.
 /// @param electrons  [in,out] after photon noise, e-, >= 0: on expected electrons the noise would not notice.
 /// @returns     boundaries that would have moved more than a quarter of the charge of a pixel, and moved that much.
 /// @accuracy    relative 1e-12 of the plain sum over pixels (test: BrighterFatter.IsTheSumOverAllPixels).

@@ -22,8 +22,8 @@ int trail_length(double loss, int transfers);
 
 /// Moves packets that lose the same share e at every transfer, whatever they hold: a constant CTE of 1 - e.
 ///
-/// After N transfers a packet keeps (1-e)^N of its charge, and C(N+k-1, k) e^k (1-e)^N arrives k packets later. A loss of
-/// 0 leaves the bits alone; with a loss of 1 nothing ever arrives.
+/// After N transfers a packet keeps (1-e)^N of its charge, and C(N+k-1, k) e^k (1-e)^N arrives k packets later. A loss
+/// of 0 leaves the bits alone; with a loss of 1 nothing ever arrives.
 /// @param loss  e, 0 .. 1.
 /// @returns   electrons that come out behind the last packet. Before = after + returned.
 /// @accuracy  weights relative 1e-12 (test: ChargeTransfer.KeepsAndDefersAsTheBinomialSays); charge relative 1e-12.
@@ -50,7 +50,8 @@ struct TrapModel {
   Seconds dwell{1e-3};  ///< time that a packet stays in one place
 };
 
-/// Moves packets through traps that fill and empty as packets pass: losses depend on the charge and on what went before.
+/// Moves packets through traps that fill and empty as packets pass: losses depend on the charge and on what went
+/// before.
 ///
 /// All traps between a packet and the register count at once (Short et al. 2013), so the cost is O(pixels x species).
 /// Every chain begins with empty traps.

@@ -24,9 +24,9 @@ struct CosmicRayModel {
   double charge_shape = 0.0;
 
   // Slab: isotropic flux, so the cosine to the normal has density 2 cos; charge along the path.
-  double thickness = 1.0;          ///< px
-  double electrons_per_path = 0.0; ///< most probable, e-/px of path
-  double fluctuation = 0.0;        ///< Moyal width relative to the most probable charge
+  double thickness = 1.0;           ///< px
+  double electrons_per_path = 0.0;  ///< most probable, e-/px of path
+  double fluctuation = 0.0;         ///< Moyal width relative to the most probable charge
 
   double longest_track = 0.0;  ///< px on the detector; of the slab, longer ones are not drawn
 };

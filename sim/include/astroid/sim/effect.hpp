@@ -108,8 +108,8 @@ struct CameraState {
   std::shared_ptr<const PixelLayout> layout;                  ///< the computed pixels
   std::vector<Strip> strips;                                  ///< of the layout
   std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][area]: those that may reach it
-  Plane<float, unit::Relative> prnu;        ///< pixel response, mean 1; empty when the effect is off
-  Plane<float, unit::Relative> flat_field;  ///< its large-scale part, mean 1; empty when the effect is off
+  Plane<float, unit::Relative> prnu;                          ///< pixel response, mean 1; empty when the effect is off
+  Plane<float, unit::Relative> flat_field;     ///< its large-scale part, mean 1; empty when the effect is off
   Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
 };
 

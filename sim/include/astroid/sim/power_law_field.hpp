@@ -11,11 +11,12 @@ namespace astroid {
 /// A Gaussian random field over a whole detector, isotropic, with power proportional to frequency^-exponent.
 ///
 /// Made by Fourier transform on a grid of smooth size (at most 6 % larger than the detector), so a period of the grid's
-/// size. Amplitudes of all frequencies are complex normals of variance f^-exponent, f = |(kx / nx, ky / ny)| in cycles a
-/// pixel, 0 at f = 0 (Timmer and Koenig 1995); then mean 0 and the rms are set over the detector. The same bits on every
-/// processor.
+/// size. Amplitudes of all frequencies are complex normals of variance f^-exponent, f = |(kx / nx, ky / ny)| in cycles
+/// a pixel, 0 at f = 0 (Timmer and Koenig 1995); then mean 0 and the rms are set over the detector. The same bits on
+/// every processor.
 ///
-/// A detector with more than 8192 px a side has a grid of half, a third, ... of its resolution, each cell being constant.
+/// A detector with more than 8192 px a side has a grid of half, a third, ... of its resolution, each cell being
+/// constant.
 /// @rng    pixel words of the frequencies (kx, ky), draws 0 and 1, exposure 0.
 /// @accuracy  mean 0 and rms to 1e-6 of the rms (single precision); slope and isotropy: test PowerLawField.*.
 /// @complexity  O(n log n), 8 bytes a pixel while it is made, then 4 (bench: BM_PowerLawField)

@@ -72,16 +72,16 @@ struct BrighterFatterSettings {
 /// Charge-transfer inefficiency.
 struct CtiSettings {
   CtiModel model = CtiModel::kNone;
-  double parallel = 0.0;                     ///< share of the charge lost per transfer between rows (simple model)
-  double serial = 0.0;                       ///< and between columns
-  double beta = 0.37;                        ///< exponent of the volume of a charge packet (trap model)
-  double temperature = 203.0;                ///< K
-  Seconds row_time{0.0007718};               ///< time that charge stays in one row
-  Seconds column_time{3.4e-7};               ///< and in one element of the register
-  std::vector<double> trap_density;          ///< per pixel, one for each species
-  std::vector<double> register_density;      ///< the same in the register; empty: none
-  std::vector<double> trap_cross_section;    ///< m²
-  std::vector<double> trap_release_time;     ///< s
+  double parallel = 0.0;                   ///< share of the charge lost per transfer between rows (simple model)
+  double serial = 0.0;                     ///< and between columns
+  double beta = 0.37;                      ///< exponent of the volume of a charge packet (trap model)
+  double temperature = 203.0;              ///< K
+  Seconds row_time{0.0007718};             ///< time that charge stays in one row
+  Seconds column_time{3.4e-7};             ///< and in one element of the register
+  std::vector<double> trap_density;        ///< per pixel, one for each species
+  std::vector<double> register_density;    ///< the same in the register; empty: none
+  std::vector<double> trap_cross_section;  ///< m²
+  std::vector<double> trap_release_time;   ///< s
 
   friend bool operator==(const CtiSettings&, const CtiSettings&) = default;
 };
