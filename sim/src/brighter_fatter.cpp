@@ -138,19 +138,19 @@ class Crossings {
 
 }  // namespace
 
-BoundaryShifts::BoundaryShifts(double serial, double parallel, double decay, int range) : range_(range) {
+BoundaryShifts::BoundaryShifts(const BrighterFatterSettings& settings) : range_(settings.range) {
   constexpr int kLongest = 16;
   constexpr double kHalf = 0.5;
-  ASTROID_CHECK_LE(1, range);
-  ASTROID_CHECK_LE(range, kLongest);
-  const double nearest = exponential_integral(decay * kHalf);
-  for (int d = 0; d < range; ++d) {
-    for (int j = 0; j < range; ++j) {
+  ASTROID_CHECK_LE(1, range_);
+  ASTROID_CHECK_LE(range_, kLongest);
+  const double nearest = exponential_integral(settings.decay * kHalf);
+  for (int d = 0; d < range_; ++d) {
+    for (int j = 0; j < range_; ++j) {
       const double along = d + kHalf;
       const double distance = det::hypot(along, j);
-      const double share = exponential_integral(decay * distance) / nearest * along / distance;
-      serial_.push_back(serial * share);
-      parallel_.push_back(parallel * share);
+      const double share = exponential_integral(settings.decay * distance) / nearest * along / distance;
+      serial_.push_back(settings.serial * share);
+      parallel_.push_back(settings.parallel * share);
     }
   }
 }

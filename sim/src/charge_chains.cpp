@@ -59,17 +59,18 @@ class TurnedRows {
   /// Columns x0 ... x1-1, then those of the follower if they are read in rising order.
   double move(int x0, int x1, bool rising, int first_transfers, const MoveChain& move) {
     const int behind = rising && follower_ != nullptr ? follower_->area.nx : 0;
-    const auto columns = static_cast<std::size_t>(x1 - x0 + behind);
+    const auto own = static_cast<std::size_t>(x1 - x0);
+    const std::size_t columns = own + static_cast<std::size_t>(behind);
     turned_.resize(columns * height_);
     const auto for_each = [&](auto&& visit) {
       for (std::size_t j = 0; j < height_; ++j) {
         const int y = y0_ + static_cast<int>(j);
         double* const row = region_.at(x0, y);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(x1 - x0); ++i) visit(row[i], turned_[i * height_ + j]);
+        for (std::size_t i = 0; i < own; ++i) visit(row[i], turned_[i * height_ + j]);
         if (behind == 0) continue;
         double* const overscan = follower_->at(follower_->area.x0, y);
         for (std::size_t i = 0; i < static_cast<std::size_t>(behind); ++i)
-          visit(overscan[i], turned_[(static_cast<std::size_t>(x1 - x0) + i) * height_ + j]);
+          visit(overscan[i], turned_[(own + i) * height_ + j]);
       }
     };
     for_each([](double pixel, double& turned) { turned = pixel; });

@@ -74,7 +74,7 @@ BENCHMARK(BM_CosmicRays)->Unit(benchmark::kMillisecond);
 
 void BM_BrighterFatter(benchmark::State& state) {
   auto image = frame();
-  const BoundaryShifts shifts(4e-7, 6e-7, 0.5, static_cast<int>(state.range(0)));
+  const BoundaryShifts shifts({4e-7, 6e-7, 0.5, static_cast<int>(state.range(0))});
   for (auto _ : state) benchmark::DoNotOptimize(brighter_fatter(image.view(), shifts));
   count_pixels(state);
 }

@@ -10,20 +10,12 @@
 
 namespace astroid {
 
-namespace {
-
-BoundaryShifts shifts_of(const BrighterFatterSettings& settings) {
-  return {settings.serial, settings.parallel, settings.decay, settings.range};
-}
-
-}  // namespace
-
 EffectNeed BrighterFatter::is_needed(const SceneSummary& scene) const {
   const BrighterFatterSettings& settings = scene.mission->ccd.brighter_fatter;
   if (settings.serial <= 0.0 && settings.parallel <= 0.0)
     return {false, "charge does not shift pixel boundaries (BrighterFatter/Serial and Parallel 0)", 0.0, 0.0};
   // Two boundaries of each kind, each shifted by all charge on one side of it, as full as the fullest pixel.
-  const BoundaryShifts shifts = shifts_of(settings);
+  const BoundaryShifts shifts(settings);
   double sum = 0.0;
   for (int d = 0; d < shifts.range(); ++d)
     for (int j = 0; j < shifts.range(); ++j)
@@ -39,7 +31,7 @@ void BrighterFatter::support(const Scene& scene, std::vector<Rectangle>& regions
 }
 
 void BrighterFatter::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  const BoundaryShifts shifts = shifts_of(context.scene.mission().ccd.brighter_fatter);
+  const BoundaryShifts shifts(context.scene.mission().ccd.brighter_fatter);
   for (std::size_t a = 0; a < strip.areas.size(); ++a) brighter_fatter(state.sampled.view(strip, a), shifts);
 }
 

@@ -31,7 +31,7 @@ Electrons2d star(double electrons, double background) {
 }
 
 TEST(BrighterFatter, ConservesCharge) {
-  const BoundaryShifts shifts(4e-7, 6e-7, 0.5, 5);
+  const BoundaryShifts shifts({4e-7, 6e-7, 0.5, 5});
   for (const double electrons : {1e2, 1e5, 8e6}) {
     Electrons2d image = star(electrons, 50.0);
     image.at(0, 0) = 5e5;
@@ -45,14 +45,14 @@ TEST(BrighterFatter, ConservesCharge) {
 TEST(BrighterFatter, LeavesTheBitsAloneAtZeroStrength) {
   Electrons2d image = star(1e5, 3.3);
   const Electrons2d before = image.clone();
-  EXPECT_EQ(brighter_fatter(image.view(), BoundaryShifts(0.0, 0.0, 0.5, 3)), 0);
+  EXPECT_EQ(brighter_fatter(image.view(), BoundaryShifts({0.0, 0.0, 0.5, 3})), 0);
   EXPECT_TRUE(std::ranges::equal(image.pixels(), before.pixels()));
 }
 
 TEST(BrighterFatter, LeavesAFlatFieldAloneAwayFromTheEdge) {
   Electrons2d image(24, 24);
   std::ranges::fill(image.pixels(), 1e5);
-  brighter_fatter(image.view(), BoundaryShifts(4e-7, 6e-7, 0.5, 4));
+  brighter_fatter(image.view(), BoundaryShifts({4e-7, 6e-7, 0.5, 4}));
   for (int y = 5; y < 19; ++y)
     for (int x = 5; x < 19; ++x) EXPECT_EQ(image.at(x, y), 1e5);
 }
@@ -61,7 +61,7 @@ TEST(BrighterFatter, WidensStarsInProportionToTheirBrightness) {
   const auto widening = [](double electrons) {
     const Electrons2d before = star(electrons, 0.0);
     Electrons2d after = before.clone();
-    brighter_fatter(after.view(), BoundaryShifts(4e-7, 4e-7, 0.5, 5));
+    brighter_fatter(after.view(), BoundaryShifts({4e-7, 4e-7, 0.5, 5}));
     const auto moment = [](const Electrons2d& image) {
       double m = 0.0;
       for (int y = 0; y < 31; ++y)
@@ -80,7 +80,7 @@ TEST(BrighterFatter, WidensStarsInProportionToTheirBrightness) {
 
 TEST(BrighterFatter, KeepsASymmetricStarSymmetric) {
   Electrons2d image = star(3e6, 100.0);
-  brighter_fatter(image.view(), BoundaryShifts(4e-7, 4e-7, 0.5, 5));
+  brighter_fatter(image.view(), BoundaryShifts({4e-7, 4e-7, 0.5, 5}));
   for (int y = 0; y < 31; ++y)
     for (int x = 0; x < 31; ++x) {
       EXPECT_NEAR(image.at(x, y), image.at(30 - x, y), 1e-9 * image.at(x, y));
@@ -92,13 +92,13 @@ TEST(BrighterFatter, NeverMovesMoreThanThereIs) {
   // Shifts of a whole pixel and more: beyond the validity, but charge stays positive and is conserved.
   Electrons2d image = star(1e8, 1.0);
   const double before = sum(image);
-  EXPECT_GT(brighter_fatter(image.view(), BoundaryShifts(1e-5, 1e-5, 0.5, 3)), 0);
+  EXPECT_GT(brighter_fatter(image.view(), BoundaryShifts({1e-5, 1e-5, 0.5, 3})), 0);
   for (const double pixel : image.pixels()) EXPECT_GE(pixel, 0.0);
   EXPECT_NEAR(sum(image), before, 1e-12 * before);
 }
 
 TEST(BrighterFatter, OfAWindowIsThatOfTheFrame) {
-  const BoundaryShifts shifts(4e-7, 6e-7, 0.4, 4);
+  const BoundaryShifts shifts({4e-7, 6e-7, 0.4, 4});
   Electrons2d frame(60, 50);
   std::size_t i = 0;
   for (double& pixel : frame.pixels()) pixel = static_cast<double>((++i * 2654435761U) % 90000U);
@@ -117,7 +117,7 @@ TEST(BrighterFatter, OfAWindowIsThatOfTheFrame) {
 TEST(BrighterFatter, BendsThePhotonTransferCurve) {
   // Variance / mean of a flat field is 1 + slope mean + (mean / 2)² sum of a²; covariances make up for it.
   constexpr int kSide = 700;
-  const BoundaryShifts shifts(4e-7, 6e-7, 0.5, 2);
+  const BoundaryShifts shifts({4e-7, 6e-7, 0.5, 2});
   const RandomStream stream = make_stream(5, StreamId{7}, 0, 0);
   const Rectangle area{0, 0, kSide, kSide};
   const std::vector<Rectangle> areas{area};

@@ -51,7 +51,7 @@ TEST(BrighterFatter, IsTheSumOverAllPixels) {
     std::size_t i = 0;
     for (double& pixel : image.pixels()) pixel = static_cast<double>((++i * 2654435761U) % 80000U);
     const Electrons2d before = image.clone();
-    EXPECT_EQ(brighter_fatter(image.view(), BoundaryShifts(3e-7, 5e-7, 0.6, range)), 0);
+    EXPECT_EQ(brighter_fatter(image.view(), BoundaryShifts({3e-7, 5e-7, 0.6, range})), 0);
     double largest = 0.0;
     for (int y = 0; y < 9; ++y)
       for (int x = 0; x < 11; ++x) {

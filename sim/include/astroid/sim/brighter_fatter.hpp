@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "astroid/core/image.hpp"
+#include "astroid/core/mission/detector.hpp"
 
 namespace astroid {
 
@@ -13,14 +14,10 @@ namespace astroid {
 class BoundaryShifts {
  public:
   /// A smooth model: the shift falls with the distance r between electron and boundary as E1(decay r) cos(theta), theta
-  /// the angle to the boundary's normal, and is `serial` or `parallel` where r is
-  /// half a pixel.
-  /// @param serial    of boundaries between columns, px/e-.
-  /// @param parallel  of boundaries between rows, px/e-.
-  /// @param decay     1/px, > 0.
-  /// @param range     charge more than this many pixels from a boundary is left out; 1 .. 16.
+  /// the angle to the boundary's normal, and is `serial` or `parallel` where r is half a pixel.
+  /// @param settings  decay > 0; range 1 .. 16.
   /// @source Guyonnet2015 for the smooth model.
-  BoundaryShifts(double serial, double parallel, double decay, int range);
+  explicit BoundaryShifts(const BrighterFatterSettings& settings);
 
   [[nodiscard]] int range() const { return range_; }
   /// Of a boundary between columns by an electron in the d-th pixel before it, j rows away; 0 <= d, j < range.
