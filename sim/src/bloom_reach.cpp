@@ -24,10 +24,15 @@ BloomReach::BloomReach(const Scene& scene) : detector_(scene.detector()) {
   const SceneSummary& summary = scene.summary();
   const ChargeInjectionSettings& injection = scene.mission().ccd.charge_injection;
   const double injected = injection.every_rows > 0 ? injection.level.value() : 0.0;
-  room_ = scene.mission().ccd.full_well.value() - at_most(summary.background + injected);
-  width_ = scene.psf().stamp_half_width(kOutside) + kSigmas * summary.attitude_rms_px + 1.0;
-  for (const SceneStar& star : scene.stars())
-    if (star.electrons > 0.0) sources_.push_back({star.position.x, star.position.y, kSpare * at_most(star.electrons)});
+  // The sky differs over the field and the year.
+  constexpr double kBackgroundSpare = 2.0;
+  room_ = scene.mission().ccd.full_well.value() - at_most(kBackgroundSpare * summary.background + injected);
+  width_ = scene.psf().stamp_half_width(kOutside) + kSigmas * summary.attitude_rms_px + summary.drift_px +
+           summary.repointing_px + summary.aberration_px + 1.0;
+  for (const SceneStar& star : scene.stars()) {
+    const double electrons = star.electrons + (star.variability >= 0 ? summary.largest_variation : 0.0);
+    if (electrons > 0.0) sources_.push_back({star.position.x, star.position.y, kSpare * at_most(electrons)});
+  }
   std::ranges::sort(sources_, {}, &Source::y);
 }
 

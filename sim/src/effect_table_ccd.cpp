@@ -1,6 +1,7 @@
 #include <array>
 
 #include "astroid/sim/effect_table.hpp"
+#include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
 #include "effects/brighter_fatter.hpp"
@@ -8,6 +9,7 @@
 #include "effects/cosmic_rays.hpp"
 #include "effects/cti.hpp"
 #include "effects/dark_current.hpp"
+#include "effects/drift.hpp"
 #include "effects/flat_field.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
@@ -15,9 +17,14 @@
 #include "effects/jitter_model.hpp"
 #include "effects/photon_noise.hpp"
 #include "effects/prnu.hpp"
+#include "effects/proper_motion_effect.hpp"
 #include "effects/readout_noise.hpp"
+#include "effects/repointing.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
+#include "effects/stray_light.hpp"
+#include "effects/variable_stars.hpp"
+#include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
 
@@ -36,12 +43,14 @@ struct Table {
   }
 };
 
-using CcdTable = Table<JitterModelEffect, JitterFileEffect,                     // Pointing
-                       Stars,                                                   // Optics
-                       Sky,                                                     // Sky
-                       FlatField, Prnu, DarkCurrent, ChargeInjection,           // PixelMean
-                       PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,  // PixelSample
-                       ReadoutNoise, GainEffect, BiasEffect, Adc>;              // Readout
+using CcdTable =
+    Table<ProperMotionEffect,                                                                    // Catalogue
+          JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
+          Stars, VariableStars,                                                                  // Optics
+          Sky, ZodiacalSky, StrayLight,                                                          // Sky
+          FlatField, Prnu, DarkCurrent, ChargeInjection,                                         // PixelMean
+          PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,                                // PixelSample
+          ReadoutNoise, GainEffect, BiasEffect, Adc>;                                            // Readout
 
 }  // namespace
 

@@ -18,6 +18,8 @@ struct PixelCost {
   double nanoseconds;
 };
 constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},
+                                     {"zodiacal-sky", 0.6},
+                                     {"stray-light", 0.6},
                                      {"prnu", 0.4},
                                      {"dark-current", 0.4},
                                      {"photon-noise", 2.55},
