@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "astroid/core/detector_noise.hpp"
+#include "astroid/core/jitter_noise.hpp"
 #include "astroid/core/photometric.hpp"
 
 namespace astroid {
@@ -30,6 +31,8 @@ RunSetup run_setup(const Mission& mission) {
   setup.cameras = mission.telescope.cameras;
   setup.simulated_cameras = mission.telescope.simulated_cameras;
   setup.prnu = pixel_response_rms(mission);
+  setup.flat_field = mission.ccd.flat_field.rms;
+  setup.flat_field_exponent = mission.ccd.flat_field.exponent;
   setup.uncontaminated_spr = mission.analysis.uncontaminated_spr;
   return setup;
 }
@@ -104,8 +107,11 @@ TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estima
   target.crowdsap = 1.0 - estimator.spr_total;
   target.flfrcsap = estimator.enclosed_fraction;
   target.flux_expected = estimator.budget.target + estimator.budget.contaminants;
-  target.prnu_magnitude = kPogson * setup.prnu * estimator.prnu_static * (1.0 - estimator.spr_total) /
-                          std::sqrt(static_cast<double>(setup.simulated_cameras));
+  const double fixed =
+      std::sqrt(square(setup.prnu * estimator.prnu_static) +
+                square(flat_field_static_noise(setup.flat_field, setup.flat_field_exponent, estimator.prnu_static)));
+  target.prnu_magnitude =
+      kPogson * fixed * (1.0 - estimator.spr_total) / std::sqrt(static_cast<double>(setup.simulated_cameras));
   target.neighbour_magnitude = kPogson * std::sqrt(estimator.budget.var_neighbour_doubt) / estimator.budget.target;
   target.causes.contamination = kMagnitudeFactor * std::log10(1.0 - estimator.spr_total);
   target.causes.aperture_loss = -kMagnitudeFactor * std::log10(estimator.enclosed_fraction);

@@ -91,6 +91,21 @@ void check_cmos(const Mission& m, Checker& checker) {
                   "CMOS/Telegraph/Fraction", "is 0, though pixels jump", "more than 0 e-/px/s");
 }
 
+void check_traps(const Mission& m, Checker& checker) {
+  const CtiSettings& cti = m.ccd.cti;
+  if (cti.model != CtiModel::kTraps) return;
+  const std::size_t species = cti.trap_density.size();
+  checker.require(species > 0, "CCD/CTI/TrapDensity", "CCD/CTI/model", "is missing",
+                  "the density of each species, since the model is traps");
+  const auto check = [&](std::size_t number, std::string_view path) {
+    checker.require(species == 0 || number == species, path, "CCD/CTI/TrapDensity",
+                    fmt::format("has {} values", number), fmt::format("{}, one for each density", species));
+  };
+  check(cti.trap_cross_section.size(), "CCD/CTI/CrossSection");
+  check(cti.trap_release_time.size(), "CCD/CTI/ReleaseTime");
+  if (!cti.register_density.empty()) check(cti.register_density.size(), "CCD/CTI/RegisterDensity");
+}
+
 void check_photometry(const Mission& m, Checker& checker) {
   const PhotometrySettings& photometry = m.photometry;
   checker.require(photometry.annulus_inner < photometry.annulus_outer, "Photometry/Annulus/Inner",
@@ -107,6 +122,7 @@ void check_together(const Mission& mission, Draft& draft) {
   check_times(mission, checker);
   check_detector(mission, checker);
   check_cmos(mission, checker);
+  check_traps(mission, checker);
   check_photometry(mission, checker);
   checker.require(mission.telescope.simulated_cameras <= mission.telescope.cameras, "Telescope/SimulatedCameras",
                   "Telescope/Cameras", "more than there are",

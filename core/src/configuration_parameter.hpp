@@ -100,6 +100,7 @@ std::vector<Parameter> stellar_field_parameters();
 std::vector<Parameter> sky_parameters();
 std::vector<Parameter> ccd_parameters();
 std::vector<Parameter> cmos_parameters();
+std::vector<Parameter> pixel_effect_parameters();
 std::vector<Parameter> photometry_parameters();
 std::vector<Parameter> analysis_parameters();
 std::vector<Parameter> output_parameters();

@@ -28,6 +28,11 @@ constexpr std::array kSections = {
     Section{"CCD/OpticalAxis",
             "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
     Section{"CCD/SubField", "The part of the detector that is simulated; without this element all of it."},
+    Section{"CCD/FlatField", "A pattern of sensitivity with a power-law spatial spectrum, beside the white PRNU."},
+    Section{"CCD/ChargeInjection", "Lines of charge that keep traps filled."},
+    Section{"CCD/CosmicRays", "Particles that leave tracks of charge."},
+    Section{"CCD/BrighterFatter", "Charge in a pixel pushes its boundaries inwards."},
+    Section{"CCD/CTI", "Charge that transfers leave behind."},
     Section{"CMOS", "What only a CMOS detector has; what both kinds have stands in CCD."},
     Section{"CMOS/Coupling", "Inter-pixel capacitance."},
     Section{"CMOS/Telegraph", "Random telegraph signal of the dark current."},
@@ -41,8 +46,8 @@ constexpr std::array kSections = {
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part : {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters,
-                    psf_parameters, stellar_field_parameters, sky_parameters, ccd_parameters, cmos_parameters,
-                    photometry_parameters, analysis_parameters, output_parameters}) {
+                    psf_parameters, stellar_field_parameters, sky_parameters, ccd_parameters, pixel_effect_parameters,
+                    cmos_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

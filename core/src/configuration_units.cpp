@@ -49,6 +49,13 @@ constexpr std::array kConversions = {
     UnitConversion{"ADU", "ADU", 1, 1},
     UnitConversion{"px", "px", 1, 1},
     UnitConversion{"K", "K", 1, 1},
+    UnitConversion{"um", "um", 1, 1},
+    UnitConversion{"um", "mm", 1000, 1},
+    UnitConversion{"m2", "m2", 1, 1},
+    UnitConversion{"1/px", "1/px", 1, 1},
+    UnitConversion{"px/e-", "px/e-", 1, 1},
+    UnitConversion{"e-/um", "e-/um", 1, 1},
+    UnitConversion{"1/cm2/s", "1/cm2/s", 1, 1},
 };
 
 }  // namespace

@@ -143,7 +143,8 @@ void add_recovery(std::vector<TargetColumn>& c) {
                               &MagnitudeCauses::aperture_loss));
   c.push_back(magnitude_cause("delta_residual", "what neither explains: saturation, background, calibration, noise",
                               &MagnitudeCauses::residual));
-  c.push_back(number("delta_prnu_rms", "mag", "expected rms of delta_residual by fixed unequal pixels",
+  c.push_back(number("delta_prnu_rms", "mag",
+                     "expected rms of delta_residual by fixed unequal pixels and the flat field",
                      &TargetMetrics::prnu_magnitude));
   c.push_back(number("delta_neighbours_rms", "mag",
                      "rms of delta_residual if neighbours are 5 % other than believed and PSF weights took them out",

@@ -2,8 +2,13 @@
 #include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
+#include "effects/brighter_fatter.hpp"
+#include "effects/charge_injection.hpp"
+#include "effects/cosmic_rays.hpp"
+#include "effects/cti.hpp"
 #include "effects/dark_current.hpp"
 #include "effects/drift.hpp"
+#include "effects/flat_field.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
 #include "effects/jitter_file.hpp"
@@ -28,8 +33,8 @@ using CcdTable =
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
                 Stars, VariableStars,                                                                  // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
-                Prnu, DarkCurrent,                                                                     // PixelMean
-                PhotonNoise, FullWell,                                                                 // PixelSample
+                FlatField, Prnu, DarkCurrent, ChargeInjection,                                         // PixelMean
+                PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,                                // PixelSample
                 ReadoutNoise, GainEffect, BiasEffect, Adc>;                                            // Readout
 
 }  // namespace

@@ -3,8 +3,10 @@
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
 #include "effects/column_noise.hpp"
+#include "effects/cosmic_rays.hpp"
 #include "effects/dark_current.hpp"
 #include "effects/drift.hpp"
+#include "effects/flat_field.hpp"
 #include "effects/gain.hpp"
 #include "effects/inter_pixel_capacitance.hpp"
 #include "effects/jitter_file.hpp"
@@ -37,8 +39,8 @@ using CmosTable =
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
                 Stars, VariableStars,                                                                  // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
-                Prnu, DarkCurrent, TelegraphPixels,                                                    // PixelMean
-                PhotonNoise, PixelSaturation,                                                          // PixelSample
+                FlatField, Prnu, DarkCurrent, TelegraphPixels,                                         // PixelMean
+                PhotonNoise, CosmicRays, PixelSaturation,                                              // PixelSample
                 GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise, BiasEffect,
                 PixelOffset, Adc, RampReads, RampFitEffect>;  // Readout
 

@@ -13,6 +13,7 @@
 #include "astroid/sim/effect_table.hpp"
 #include "plan_cost.hpp"
 #include "plan_motion.hpp"
+#include "reference_pixels.hpp"
 
 namespace astroid {
 
@@ -53,16 +54,8 @@ std::vector<StampTier> plan_stamps(const Scene& scene, double share, double& err
   return stamps;
 }
 
-std::string describe_pixels(const Scene& scene, const Plan& plan, std::vector<std::string>& approximations) {
+std::string describe_delivered(const Scene& scene) {
   const CcdSettings& ccd = scene.mission().ccd;
-  const bool blooms = plan.runs("full-well") && ccd.blooming;
-  if (ccd.window > 0 || ccd.has_sub_field) {
-    if (blooms)
-      approximations.emplace_back(
-          "charge that blooms into the computed pixels from saturated stars outside them is left out; everything else "
-          "is "
-          "bit for bit what the full frame has");
-  }
   if (ccd.window > 0)
     return fmt::format("{} windows of {} x {} px ({} px in all) of the {} x {} px detector",
                        scene.layout()->regions().size(), ccd.window, ccd.window, scene.layout()->size(), ccd.columns,
@@ -71,6 +64,14 @@ std::string describe_pixels(const Scene& scene, const Plan& plan, std::vector<st
     return fmt::format("sub-field of {} x {} px from ({}, {}) of the {} x {} px detector", ccd.sub_columns,
                        ccd.sub_rows, ccd.sub_x0, ccd.sub_y0, ccd.columns, ccd.rows);
   return fmt::format("full frame of {} x {} px", ccd.columns, ccd.rows);
+}
+
+std::string describe_pixels(const Scene& scene, const Plan& plan) {
+  std::string text = describe_delivered(scene);
+  if (plan.layout != scene.layout())
+    text +=
+        fmt::format("; {} px are computed, since charge and light of those outside reach them", plan.layout->size());
+  return text;
 }
 
 }  // namespace
@@ -109,12 +110,17 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
   const PixelLayout& delivered = *scene.layout();
   const std::span<const Rectangle> exposed = delivered.exposed_regions();
   std::vector<Rectangle> regions(exposed.begin(), exposed.end());
-  for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned)
-    if (planned->need.needed) planned->effect->support(scene, regions);
+  for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned) {
+    if (!planned->need.needed) continue;
+    planned->effect->support(scene, regions);
+    // More than the whole detector is never needed.
+    std::size_t pixels = 0;
+    for (const Rectangle& region : regions) pixels += region.size();
+    if (pixels > scene.detector().size()) regions = {scene.detector()};
+  }
   if (std::ranges::equal(regions, exposed)) return scene.layout();
-  const std::span<const Rectangle> reference = delivered.reference_regions();
-  return std::make_shared<const PixelLayout>(std::move(regions),
-                                             std::vector<Rectangle>(reference.begin(), reference.end()));
+  const std::vector<Rectangle> reference = reference_regions(regions, scene.detector(), scene.mission().ccd.reference);
+  return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 
 std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
@@ -162,7 +168,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   if (moves) plan_jitter(scene, kShares.jitter, plan);
   if (moves && steady) plan_polynomial(scene, kShares.jitter, plan);
-  plan.pixels = describe_pixels(scene, plan, plan.approximations);
+  plan.pixels = describe_pixels(scene, plan);
   predict_times(plan, scene, costs);
   plan.memory_bytes = predicted_memory(plan);
   return plan;

@@ -18,10 +18,20 @@ struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
-constexpr PixelCost kPixelCosts[] = {
-    {"sky", 0.1},          {"zodiacal-sky", 0.6},  {"stray-light", 0.6}, {"prnu", 0.4},
-    {"dark-current", 0.4}, {"photon-noise", 2.55}, {"full-well", 0.3},   {"readout-noise", 1.45},
-    {"gain", 0.15},        {"bias", 0.1},          {"adc", 0.5}};
+constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},
+                                     {"zodiacal-sky", 0.6},
+                                     {"stray-light", 0.6},
+                                     {"prnu", 0.4},
+                                     {"dark-current", 0.4},
+                                     {"photon-noise", 2.55},
+                                     {"full-well", 0.3},
+                                     {"readout-noise", 1.45},
+                                     {"gain", 0.15},
+                                     {"bias", 0.1},
+                                     {"adc", 0.5},
+                                     {"flat-field", 0.4},
+                                     {"charge-injection", 0.05},
+                                     {"cosmic-rays", 0.5}};
 /// The same of a CMOS detector, a read (bench: BM_CmosExposure).
 constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 2.0},
                                     {"pixel-gain", 0.4},       {"reset-noise", 1.45},
@@ -43,6 +53,19 @@ struct StarCost {
 constexpr StarCost kAnalytic{.star = 70.0, .row = 5.0, .pixel = 0.1, .broadening = 1.7};
 constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5.0};
 constexpr double kNanosecond = 1e-9;
+
+/// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are
+/// cheaper to move than columns, which are turned first.
+double moving_cost(std::string_view effect, const CcdSettings& ccd) {
+  constexpr double kShift = 0.9;   // range² times
+  constexpr double kSimple = 2.0;  // for each direction
+  constexpr double kTrap = 6.0;    // for each species
+  if (effect == "brighter-fatter") return kShift * ccd.brighter_fatter.range * ccd.brighter_fatter.range;
+  if (effect != "cti") return 0.0;
+  if (ccd.cti.model == CtiModel::kSimple)
+    return (ccd.cti.parallel > 0.0 ? kSimple : 0.0) + (ccd.cti.serial > 0.0 ? 2.0 * kSimple : 0.0);
+  return kTrap * static_cast<double>(ccd.cti.trap_density.size() + ccd.cti.register_density.size());
+}
 
 const StarCost& star_cost(const Plan& plan) {
   return plan.renderer == "analytic" ? kAnalytic : kPrf;
@@ -103,7 +126,7 @@ double nominal_seconds(const PlannedEffect& effect, const Plan& plan, const Scen
        {std::span<const PixelCost>(kPixelCosts), std::span<const PixelCost>(kReadCosts)})
     for (const PixelCost& cost : costs)
       if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * reads;
-  return 0.0;
+  return kNanosecond * moving_cost(spec.name, scene.mission().ccd) * pixels;
 }
 
 }  // namespace
@@ -147,9 +170,10 @@ void predict_times(Plan& plan, const Scene& scene, const CostFactors& costs) {
 
 double predicted_memory(const Plan& plan) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
-  if (plan.runs("full-well")) bytes_per_pixel += sizeof(double);  // drawn electrons, column by column
-  if (plan.reads > 1 && plan.runs("inter-pixel-capacitance"))     // planes and ramps of all pixels from read to read
+  // Drawn electrons, where charge moves from pixel to pixel.
+  if (plan.reads > 1 && plan.runs("inter-pixel-capacitance"))  // planes and ramps of all pixels from read to read
     bytes_per_pixel += 5.0 * sizeof(double) + sizeof(float) + 2.0 * sizeof(std::uint8_t);
+  if (plan.runs("full-well") || plan.runs("brighter-fatter") || plan.runs("cti")) bytes_per_pixel += sizeof(double);
   constexpr double kStripPlanes = 3.0;  // expected and drawn electrons, ADU
   return bytes_per_pixel * static_cast<double>(plan.layout->size()) +
          kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);

@@ -301,6 +301,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+  if (ccd.charge_injection.every_rows > 0) s.peak_pixel_bound += ccd.charge_injection.level.value();
 }
 
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {

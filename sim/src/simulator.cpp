@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "astroid/core/detector_noise.hpp"
@@ -386,14 +387,25 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
 void Simulator::deliver(ExposureState& state) const {
   if (state.more == nullptr) return;
   const PixelLayout& delivered = *scene_->layout();
+  const PixelLayout& computed = *plan_->layout;
   for (std::size_t r = 0; r < delivered.regions().size(); ++r) {
     const Rectangle& region = delivered.regions()[r];
-    const auto first = static_cast<std::size_t>(region.x0 - plan_->layout->regions()[r].x0);
+    // Exposed regions keep their order, unless all of the detector is computed; reference regions are joined anew.
+    const std::span<const Rectangle> exposed = computed.exposed_regions();
+    const bool whole = exposed.size() == 1 && exposed.front() == scene_->detector();
+    std::size_t from = whole ? 0 : r;
+    if (r >= delivered.exposed_regions().size()) {
+      const auto holds = [&](const Rectangle& area) { return intersect(area, region) == region; };
+      const auto found = std::ranges::find_if(computed.reference_regions(), holds);
+      ASTROID_CHECK_EQ(found != computed.reference_regions().end(), true);
+      from = exposed.size() + static_cast<std::size_t>(found - computed.reference_regions().begin());
+    }
+    const auto first = static_cast<std::size_t>(region.x0 - computed.regions()[from].x0);
     for (int y = region.y0; y < region.y1(); ++y) {
       const auto width = static_cast<std::size_t>(region.nx);
-      std::ranges::copy(state.more->pixels.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->pixels.view(from).row(y).subspan(first, width),
                         state.frame.pixels.view(r).row(y).begin());
-      std::ranges::copy(state.more->flags.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->flags.view(from).row(y).subspan(first, width),
                         state.frame.flags.view(r).row(y).begin());
     }
   }

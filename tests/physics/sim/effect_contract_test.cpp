@@ -123,13 +123,30 @@ std::vector<test::EffectScene> scenes() {
             m.ccd.dsnu = 0.15;
           },
           [](Mission& m) { m.ccd.dark_current = ElectronsPerSecond(0.0); }),
+      scene(
+          "flat-field", [](Mission& m) { m.ccd.flat_field.rms = 0.01; },
+          [](Mission& m) { m.ccd.flat_field.rms = 0.0; }),
+      scene(
+          "charge-injection",
+          [](Mission& m) { m.ccd.charge_injection = {.every_rows = 9, .first_row = 3, .level = Electrons(5e3)}; },
+          [](Mission& m) { m.ccd.charge_injection.every_rows = 0; }),
       scene("photon-noise", {}, {}),
       scene(
-          "full-well",
+          "cosmic-rays", [](Mission& m) { m.ccd.cosmic_rays.rate = 500.0; },
+          [](Mission& m) { m.ccd.cosmic_rays.rate = 0.0; }),
+      scene(
+          "brighter-fatter",
+          [](Mission& m) { m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 4e-7, .decay = 0.5, .range = 4}; },
+          [](Mission& m) { m.ccd.brighter_fatter = {}; }),
+      scene(
+          "cti",
           [](Mission& m) {
-            m.ccd.full_well = Electrons(100000.0);
-            m.ccd.blooming = false;
+            m.ccd.cti.model = CtiModel::kSimple;
+            m.ccd.cti.parallel = m.ccd.cti.serial = 1e-4;
           },
+          [](Mission& m) { m.ccd.cti.parallel = m.ccd.cti.serial = 0.0; }),
+      scene(
+          "full-well", [](Mission& m) { m.ccd.full_well = Electrons(60000.0); },
           [](Mission& m) { m.ccd.full_well = Electrons(1e12); }),
       scene("readout-noise", {}, [](Mission& m) { m.ccd.readout_noise = Electrons(0.0); }),
       scene("gain", {}, {}),

@@ -62,6 +62,34 @@ std::vector<Switch> switches() {
        [](Mission& m) {
          m.field.stray_light = {.level = ElectronsPerSecond(64.0), .gradient_x = 0.5, .gradient_y = -0.5};
        }},
+      {"flat field", [](Mission& m) { m.ccd.flat_field = {.rms = 0.4, .exponent = 2.0}; }},
+      {"charge injection",
+       [](Mission& m) { m.ccd.charge_injection = {.every_rows = 7, .first_row = 3, .level = Electrons(3e4)}; }},
+      {"cosmic rays", [](Mission& m) { m.ccd.cosmic_rays.rate = 3000.0; }},
+      {"cosmic rays through a slab",
+       [](Mission& m) {
+         m.ccd.cosmic_rays.rate = 1000.0;
+         m.ccd.cosmic_rays.model = CosmicRayKind::kSlab;
+         m.ccd.cosmic_rays.longest_track = Pixels(60.0);
+       }},
+      {"brighter-fatter",
+       [](Mission& m) { m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 5e-7, .decay = 0.5, .range = 3}; }},
+      {"overscan", [](Mission& m) { m.ccd.reference = {.prescan = 2, .serial_overscan = 3, .parallel_overscan = 4}; }},
+      {"two nodes", [](Mission& m) { m.ccd.nodes.count = 2; }},
+      {"simple CTI",
+       [](Mission& m) {
+         m.ccd.cti.model = CtiModel::kSimple;
+         m.ccd.cti.parallel = 1e-3;
+         m.ccd.cti.serial = 1e-4;
+       }},
+      {"traps",
+       [](Mission& m) {
+         m.ccd.cti.model = CtiModel::kTraps;
+         m.ccd.cti.trap_density = {4.9, 6.62};
+         m.ccd.cti.register_density = {0.5, 0.0};
+         m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
+         m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
+       }},
       {"narrow PSF", [](Mission& m) { m.psf.sigma = Pixels(0.05); }},
       {"wide PSF", [](Mission& m) { m.psf.sigma = Pixels(4.5); }},
       {"rough", [](Mission& m) { m.simulation.accuracy = Ppm(10000.0); }},

@@ -24,9 +24,12 @@ struct RunSetup {
   int cameras = 1;                   ///< N that observe the field
   int simulated_cameras = 1;         ///< n <= N whose mean the measured series is
   double prnu = 0.0;                 ///< rms of pixel gains that calibration leaves, relative
+  double flat_field = 0.0;           ///< rms of a large-scale pattern that calibration leaves, relative
+  double flat_field_exponent = 1.0;  ///< of its spectrum
   double uncontaminated_spr = 1e-3;  ///< stars with less contamination judge magnitude recovery
 };
-/// @param prnu  pixel gains are not corrected, so the whole of CCD/PRNU is left, unless the caller knows better.
+/// Unequal sensitivity is not corrected, so the whole of CCD/PRNU and CCD/FlatField is left, unless the caller knows
+/// better.
 RunSetup run_setup(const Mission& mission);
 
 /// Noise of the mean over one bin by its cause, ppm of the target's flux in the aperture.
@@ -72,13 +75,14 @@ struct TargetMetrics {
   double nsr_exposure = 0.0;  ///< predicted.exposure
   double nsr_1h_ppm = 0.0;    ///< predicted.bin.total()
   PredictedNoise predicted;
-  double spr_tot = 0.0;              ///< stellar pollution ratio, sky excluded
-  double crowdsap = 0.0;             ///< 1 - spr_tot
-  double flfrcsap = 0.0;             ///< target's flux in the aperture / all flux of the target
-  double flux_in = 0.0;              ///< e- per exposure, all of the PSF
-  double flux_expected = 0.0;        ///< e- per exposure, target and contaminants in the aperture
-  std::uint32_t flags = 0;           ///< measurement_flag bits
-  double prnu_magnitude = 0.0;       ///< expected rms error of the magnitude by fixed unequal pixels, n cameras, mag
+  double spr_tot = 0.0;        ///< stellar pollution ratio, sky excluded
+  double crowdsap = 0.0;       ///< 1 - spr_tot
+  double flfrcsap = 0.0;       ///< target's flux in the aperture / all flux of the target
+  double flux_in = 0.0;        ///< e- per exposure, all of the PSF
+  double flux_expected = 0.0;  ///< e- per exposure, target and contaminants in the aperture
+  std::uint32_t flags = 0;     ///< measurement_flag bits
+  double prnu_magnitude =
+      0.0;  ///< expected rms error of the magnitude by fixed unequal pixels and the flat field, n cameras, mag
   double neighbour_magnitude = 0.0;  ///< the same by the doubt of neighbours' light that PSF weights take out, mag
 
   std::int64_t exposures = 0, missing = 0;

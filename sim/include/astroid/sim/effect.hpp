@@ -115,6 +115,7 @@ struct CameraState {
   std::vector<std::vector<std::vector<RenderedStar>>> stars;      ///< [strip][area]: those that may reach it
   std::vector<std::vector<std::vector<RenderedStar>>> variables;  ///< likewise those whose flux varies
   Plane<float, unit::Relative> prnu;           ///< pixel response, mean 1; empty when the effect is off
+  Plane<float, unit::Relative> flat_field;     ///< its large-scale part, mean 1; empty when the effect is off
   Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
   CmosPatterns cmos;                           ///< of a CMOS detector
 };
