@@ -23,7 +23,8 @@ void add_column_light(const PixelPsf& psf, const StarLight& star, const Rectangl
                       std::span<double> columns, std::vector<double>& scratch);
 
 /// Adds the change of the same with the star's position, to first order.
-/// @param along_x, along_y  [in,out] e- per exposure and px of displacement; away from the first and last row the change
+/// @param along_x, along_y  [in,out] e- per exposure and px of displacement; away from the first and last row the
+/// change
 ///                          along y is 0.
 void add_column_gradient(const PixelPsf& psf, const StarLight& star, const Rectangle& detector, int x0,
                          std::span<double> along_x, std::span<double> along_y, std::vector<double>& scratch);
