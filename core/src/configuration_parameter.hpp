@@ -97,6 +97,7 @@ std::vector<Parameter> telescope_parameters();
 std::vector<Parameter> psf_parameters();
 std::vector<Parameter> stellar_field_parameters();
 std::vector<Parameter> ccd_parameters();
+std::vector<Parameter> readout_parameters();
 std::vector<Parameter> photometry_parameters();
 std::vector<Parameter> analysis_parameters();
 std::vector<Parameter> output_parameters();

@@ -24,6 +24,11 @@ constexpr std::array kSections = {
     Section{"CCD", "The detector and its electronics."},
     Section{"CCD/OpticalAxis",
             "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
+    Section{"CCD/ReferencePixels", "Pixels that are read with the light-sensitive ones but see no light."},
+    Section{"CCD/Smearing", "Light that falls on charge while it is moved, in a detector without a shutter."},
+    Section{"CCD/Nodes", "Amplifiers that read parts of the detector at the same time."},
+    Section{"CCD/Electronics", "What the electronics do to the signal between the nodes and the converter."},
+    Section{"CCD/BadPixels", "Pixels that do not work, at places drawn once."},
     Section{"CCD/SubField", "The part of the detector that is simulated; without this element all of it."},
     Section{"Photometry", "How fluxes are measured."},
     Section{"Photometry/Annulus", "Ring around a star in which the local background is measured."},
@@ -36,7 +41,7 @@ std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part :
        {simulation_parameters, satellite_parameters, telescope_parameters, psf_parameters, stellar_field_parameters,
-        ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+        ccd_parameters, readout_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+
+#include "astroid/core/error.hpp"
 
 namespace astroid {
 
@@ -12,6 +15,12 @@ double ElectronicResponse::in(double output) const {
   const double linear = 1.0 + a1;
   const double discriminant = linear * linear + 4.0 * (a2 * rest);
   return 2.0 * rest / (linear + std::sqrt(std::max(0.0, discriminant)));
+}
+
+ElectronicResponse make_response(std::span<const double> coefficients) {
+  if (coefficients.empty()) return {};
+  ASTROID_CHECK_EQ(coefficients.size(), std::size_t{3});
+  return {.a0 = coefficients[0], .a1 = coefficients[1], .a2 = coefficients[2]};
 }
 
 void bend(const ElectronicResponse& response, double bias, std::span<double> values) {

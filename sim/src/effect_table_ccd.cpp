@@ -2,16 +2,21 @@
 
 #include "astroid/sim/effect_table.hpp"
 #include "effects/adc.hpp"
+#include "effects/bad_pixels.hpp"
 #include "effects/bias.hpp"
+#include "effects/bias_drift.hpp"
+#include "effects/cross_talk.hpp"
 #include "effects/dark_current.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
+#include "effects/nonlinearity.hpp"
 #include "effects/photon_noise.hpp"
 #include "effects/prnu.hpp"
 #include "effects/readout_noise.hpp"
 #include "effects/sky.hpp"
+#include "effects/smearing.hpp"
 #include "effects/stars.hpp"
 
 namespace astroid {
@@ -31,12 +36,13 @@ struct Table {
   }
 };
 
-using CcdTable = Table<JitterModelEffect, JitterFileEffect,         // Pointing
-                       Stars,                                       // Optics
-                       Sky,                                         // Sky
-                       Prnu, DarkCurrent,                           // PixelMean
-                       PhotonNoise, FullWell,                       // PixelSample
-                       ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout
+using CcdTable =
+    Table<JitterModelEffect, JitterFileEffect,                                                   // Pointing
+          Stars,                                                                                 // Optics
+          Sky,                                                                                   // Sky
+          Prnu, DeadPixels, DarkCurrent, HotPixels, OpenShutterSmearing, FrameTransferSmearing,  // PixelMean
+          PhotonNoise, FullWell,                                                                 // PixelSample
+          ReadoutNoise, GainEffect, CrossTalk, NonLinearity, BiasEffect, BiasDrift, RowOffset, BadPixelMap, Adc>;      // Readout
 
 }  // namespace
 

@@ -12,6 +12,7 @@
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/sim/smearing.hpp"
 #include "effects/jitter_model.hpp"
 #include "psf_sensitivity.hpp"
 #include "reference_pixels.hpp"
@@ -223,6 +224,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+  s.brightest_column = brightest_column_bound(*this);
 }
 
 Seconds Scene::mid_time(std::int64_t exposure) const {

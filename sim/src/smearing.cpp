@@ -33,8 +33,7 @@ StarLight smeared_star(const Scene& scene, const SceneStar& star, double share) 
 
 double smeared_sky(const Scene& scene) {
   const Mission& mission = scene.mission();
-  return share_of(scene) * mission.ccd.rows *
-         (mission.field.sky_background * mission.simulation.exposure_time).value();
+  return share_of(scene) * mission.ccd.rows * (mission.field.sky_background * mission.simulation.exposure_time).value();
 }
 
 }  // namespace
@@ -51,7 +50,8 @@ SmearedColumns::SmearedColumns(const Scene& scene, int first, int columns)
   for (const SceneStar& star : scene.stars()) {
     if (!(star.electrons > 0.0)) continue;
     const StarLight light = smeared_star(scene, star, share);
-    const Rectangle box = intersect(stamp_box(light.centre, light.half_width), {first, detector.y0, columns, detector.ny});
+    const Rectangle box =
+        intersect(stamp_box(light.centre, light.half_width), {first, detector.y0, columns, detector.ny});
     if (box.empty()) continue;
     add_column_light(scene.psf(), light, detector, first, electrons_, scratch);
     along_x.assign(static_cast<std::size_t>(box.nx), 0.0);
@@ -74,8 +74,8 @@ void SmearedColumns::at(const Attitude& attitude, double throughput, int x0, std
   const auto begin = static_cast<std::size_t>(x0 - first_);
   for (std::size_t i = 0; i < row.size(); ++i) {
     const std::size_t k = begin + i;
-    const double moved = attitude.yaw * per_arcsec_[0][k] + attitude.pitch * per_arcsec_[1][k] +
-                         attitude.roll * per_arcsec_[2][k];
+    const double moved =
+        attitude.yaw * per_arcsec_[0][k] + attitude.pitch * per_arcsec_[1][k] + attitude.roll * per_arcsec_[2][k];
     // Motion may take away what little a column has, but no more.
     row[i] = std::max(0.0, throughput * (electrons_[k] + moved));
   }
@@ -107,7 +107,8 @@ Plane<float, unit::ExpectedElectrons> missing_from_above(const Scene& scene,
       scene.psf().integrate(star.centre, box, fractions);
       for (int y = box.y0; y < box.y1(); ++y) {
         double* row = rows.data() + static_cast<std::size_t>(std::min(y, area.y1()) - area.y0) * width;
-        const double* fraction = fractions.data() + static_cast<std::size_t>(y - box.y0) * static_cast<std::size_t>(box.nx);
+        const double* fraction =
+            fractions.data() + static_cast<std::size_t>(y - box.y0) * static_cast<std::size_t>(box.nx);
         for (int x = box.x0; x < box.x1(); ++x)
           row[x - area.x0] += star.electrons / share_of(scene) * share * fraction[x - box.x0];
       }

@@ -55,8 +55,7 @@ EffectNeed DeadPixels::is_needed(const SceneSummary& scene) const {
 }
 
 void DeadPixels::prepare(CameraState& camera, const PrepareContext& context) const {
-  camera.dead_pixels =
-      drawn_pixels(context.stream, *camera.layout, context.scene.mission().ccd.bad_pixels.dead);
+  camera.dead_pixels = drawn_pixels(context.stream, *camera.layout, context.scene.mission().ccd.bad_pixels.dead);
 }
 
 void DeadPixels::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {

@@ -80,8 +80,7 @@ void CrossTalk::apply(ExposureState& state, const EffectContext& context, const 
       const auto source =
           std::ranges::find_if(strip.areas, [&](const Rectangle& region) { return holds(region, other); });
       if (source == strip.areas.end()) continue;  // computed for its own sake only
-      const std::size_t begin =
-          strip.area_begins[static_cast<std::size_t>(source - strip.areas.begin())] - strip.begin;
+      const std::size_t begin = strip.area_begins[static_cast<std::size_t>(source - strip.areas.begin())] - strip.begin;
       for (int y = area.y0; y < area.y1(); ++y) {
         const int y_other = mirror.y ? detector.y0 + detector.y1() - 1 - y : y;
         const double* row = state.scratch.data() + begin +

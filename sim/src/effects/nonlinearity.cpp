@@ -23,9 +23,10 @@ EffectNeed NonLinearity::is_needed(const SceneSummary& scene) const {
   const double bias = constant + relative * (flux + scene.background * scene.aperture_pixels);
   const double tolerance = scene.tightest_tolerance();
   return {constant > tolerance || relative > scene.accuracy,
-          fmt::format("bends a signal of {:.4g} ADU, the brightest pixel, by at most {:.3g} ppm, every pixel by {:.3g} ADU; "
-                      "the accuracy asked for is {:.3g} ppm",
-                      highest, 1e6 * relative, std::fabs(response.a0), 1e6 * scene.accuracy),
+          fmt::format(
+              "bends a signal of {:.4g} ADU, the brightest pixel, by at most {:.3g} ppm, every pixel by {:.3g} ADU; "
+              "the accuracy asked for is {:.3g} ppm",
+              highest, 1e6 * relative, std::fabs(response.a0), 1e6 * scene.accuracy),
           bias, 2.0 * relative};
 }
 

@@ -26,6 +26,9 @@ struct ElectronicResponse {
   friend bool operator==(const ElectronicResponse&, const ElectronicResponse&) = default;
 };
 
+/// Of coefficients a0, a1, a2 as a configuration lists them; linear for none.
+ElectronicResponse make_response(std::span<const double> coefficients);
+
 /// values[i] = bias + out(values[i] - bias).  @complexity  O(values), 6 operations each
 void bend(const ElectronicResponse& response, double bias, std::span<double> values);
 
