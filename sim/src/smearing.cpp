@@ -16,6 +16,7 @@ constexpr double kTruncation = 0.01;
 
 double share_of(const Scene& scene) {
   const Mission& mission = scene.mission();
+  if (mission.ccd.smearing.model == SmearingModel::kNone) return 0.0;
   return clocking_share(mission.ccd.smearing.time.value(), mission.simulation.exposure_time.value(), mission.ccd.rows);
 }
 
@@ -85,7 +86,7 @@ Plane<float, unit::ExpectedElectrons> missing_from_above(const Scene& scene,
                                                          const std::shared_ptr<const PixelLayout>& layout) {
   const SmearingSettings& smearing = scene.mission().ccd.smearing;
   const double missing = 1.0 - smearing.clear_time / smearing.time;
-  if (!(smearing.time.value() > 0.0) || missing == 0.0) return {};
+  if (smearing.model != SmearingModel::kFrameTransfer || missing == 0.0) return {};
   const Rectangle detector = scene.detector();
   const double share = share_of(scene) * missing;
   const double sky = smeared_sky(scene) * missing / std::max(1, detector.ny);

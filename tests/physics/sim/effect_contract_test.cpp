@@ -70,6 +70,31 @@ std::vector<test::EffectScene> scenes() {
             m.ccd.dsnu = 0.15;
           },
           [](Mission& m) { m.ccd.dark_current = ElectronsPerSecond(0.0); }),
+      scene(
+          "dead-pixels", [](Mission& m) { m.ccd.bad_pixels.dead = 0.01; },
+          [](Mission& m) { m.ccd.bad_pixels.dead = 0.0; }),
+      scene(
+          "hot-pixels", [](Mission& m) { m.ccd.bad_pixels.hot = 0.01; },
+          [](Mission& m) { m.ccd.bad_pixels.hot = 0.0; }),
+      scene(
+          "bad-pixel-map", [](Mission& m) { m.ccd.bad_pixels.dead = m.ccd.bad_pixels.hot = 0.02; },
+          [](Mission& m) { m.ccd.bad_pixels.dead = m.ccd.bad_pixels.hot = 0.0; }),
+      scene(
+          "open-shutter-smearing",
+          [](Mission& m) {
+            m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(4.0)};
+            m.ccd.reference = {.prescan = 10, .serial_overscan = 5, .parallel_overscan = 20};
+            m.satellite.jitter.model = JitterModel::kRedNoise;
+            m.satellite.jitter.yaw = m.satellite.jitter.pitch = Arcseconds(0.1);
+          },
+          [](Mission& m) { m.ccd.smearing.model = SmearingModel::kNone; }),
+      scene(
+          "frame-transfer-smearing",
+          [](Mission& m) {
+            m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(4.0), .clear_time = Seconds(1.0)};
+            m.ccd.reference.parallel_overscan = 20;
+          },
+          [](Mission& m) { m.ccd.smearing.model = SmearingModel::kNone; }),
       scene("photon-noise", {}, {}),
       scene(
           "full-well",
@@ -81,6 +106,29 @@ std::vector<test::EffectScene> scenes() {
       scene("readout-noise", {}, [](Mission& m) { m.ccd.readout_noise = Electrons(0.0); }),
       scene("gain", {}, {}),
       scene("bias", {}, [](Mission& m) { m.ccd.bias = Adu(0.0); }),
+      scene(
+          "cross-talk",
+          [](Mission& m) {
+            m.ccd.nodes.count = 4;
+            m.ccd.nodes.cross_talk = 0.01;
+          },
+          [](Mission& m) { m.ccd.nodes.cross_talk = 0.0; }),
+      scene(
+          "non-linearity",
+          [](Mission& m) {
+            m.ccd.electronics.nonlinearity = {0.0, -0.0042789409, 2.365e-7};
+          },
+          [](Mission& m) { m.ccd.electronics.nonlinearity.clear(); }),
+      scene(
+          "bias-drift", [](Mission& m) { m.ccd.electronics.bias_drift = 30000.0; },
+          [](Mission& m) { m.ccd.electronics.bias_drift = 0.0; }),
+      scene(
+          "row-offset",
+          [](Mission& m) {
+            m.ccd.electronics.row_offset = 2.0;
+            m.ccd.nodes.count = 2;
+          },
+          [](Mission& m) { m.ccd.electronics.row_offset = 0.0; }),
       scene("adc", {}, {}),
   };
 }

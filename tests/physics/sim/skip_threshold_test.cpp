@@ -112,6 +112,17 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(SkipCase{"sky", [](Mission& m, double v) { m.field.sky_background = ElectronsPerSecond(v); }, 10.0},
                     SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); },
                              10.0},
+                    SkipCase{"open-shutter-smearing",
+                             [](Mission& m, double v) {
+                               m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(v)};
+                             },
+                             10.0},
+                    SkipCase{"frame-transfer-smearing",
+                             [](Mission& m, double v) {
+                               m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(v)};
+                               m.ccd.smearing.clear_time = Seconds(0.0);
+                             },
+                             10.0},
                     SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
     [](const testing::TestParamInfo<SkipCase>& parameter) {
       std::string name = parameter.param.effect;
