@@ -85,6 +85,7 @@ class StarEstimatorBuilder {
   std::vector<double> scratch_;
   std::vector<std::size_t> found_;
   std::vector<double> column_weights_;
+  std::vector<double> row_weights_;
   Annulus annulus_;
   LightChange change_x_, change_y_;
   std::vector<double> doubts_;  // of PSF weights: shape (doubts, pixels), e-; neighbours first

@@ -20,6 +20,7 @@
 #include "astroid/core/mission.hpp"
 #include "astroid/core/noise.hpp"
 #include "astroid/core/psf.hpp"
+#include "astroid/core/readout_nodes.hpp"
 
 namespace astroid {
 
@@ -79,7 +80,12 @@ struct GroundModel {
   /// out more slowly than pixel noise is to be given larger by that much. 0: the weights are those of stars at rest.
   MotionCovariance motion;
   ColumnSmearing smearing;
-  double bias_variance = 0.0;  ///< e-², of the bias level where it is measured in each exposure; 0: it is known
+  double bias_variance = 0.0;        ///< e-², of the bias level where it is measured in each exposure; 0: it is known
+  double row_offset_variance = 0.0;  ///< e-², of an offset that each row has in each exposure
+  bool bias_is_measured = false;     ///< in each exposure, so that its drift does not matter
+  /// Which pixel is read through which node, and what the readout noise of each has more than `noise`, e-².
+  ReadoutNodes nodes{{}, 1};
+  std::array<double, kMostNodes> more_readout_variance{};
 };
 
 /// Expected electrons and variance (e-, e-²) of one estimator in one exposure, cause by cause.
@@ -99,7 +105,8 @@ struct EstimatorBudget {
   double smearing = 0.0;                 ///< weighted electrons that are smeared into the flux and stay there
   double var_smearing = 0.0;             ///< photon noise of what is smeared into the pixels, corrected or not
   double var_smearing_correction = 0.0;  ///< of the column levels that are subtracted: the same for all rows
-  double var_bias = 0.0;                 ///< of a bias that is measured in each exposure
+  double var_bias = 0.0;                 ///< of a bias that is measured in each exposure, and of offsets of rows
+  double bias_weight = 0.0;              ///< change of the flux, e-, with a bias higher by 1 e- than believed
   [[nodiscard]] double variance() const {
     return var_target + var_contaminants + var_background + var_readout + var_quantisation + var_background_estimate +
            var_smearing + var_smearing_correction + var_bias;

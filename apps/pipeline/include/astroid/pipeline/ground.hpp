@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "astroid/photometry/calibration.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -17,5 +18,8 @@ struct Ground {
 /// A ground that knows the stars, the PSF, the mean background, the detector and the statistics of the jitter exactly.
 /// @param scene  must outlive the result.
 Ground perfect_ground(const Scene& scene);
+
+/// What the ground believes of the readout, and what it corrects.
+CalibrationModel calibration_model(const Mission& mission);
 
 }  // namespace astroid
