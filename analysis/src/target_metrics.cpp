@@ -124,7 +124,7 @@ TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estima
   target.neighbour_magnitude = kPogson * std::sqrt(estimator.budget.var_neighbour_doubt) / estimator.budget.target;
   target.causes.contamination = kMagnitudeFactor * std::log10(1.0 - estimator.spr_total);
   target.causes.aperture_loss = -kMagnitudeFactor * std::log10(estimator.enclosed_fraction);
-  target.causes.smearing = -kMagnitudeFactor * std::log10(target.flux_expected / stars);
+  if (target.flux_smeared != 0.0) target.causes.smearing = -kMagnitudeFactor * std::log10(target.flux_expected / stars);
   return target;
 }
 
@@ -170,7 +170,8 @@ void add_measurement(TargetMetrics& target, const SeriesSummary& series, double 
     target.causes.residual -= target.causes.smearing;
   }
   // From noise relative to all light in the aperture to noise relative to the target's.
-  const double smeared = target.flux_expected / (target.flux_expected - target.flux_smeared);
+  const double stars = target.flux_expected - target.flux_smeared;
+  const double smeared = target.flux_smeared != 0.0 ? target.flux_expected / stars : 1.0;
   const double whole = smeared / target.crowdsap;
   target.nsr_exposure_measured = series.exposure.scaled(whole);
   target.nsr_1h_within_measured = series.bin_within.scaled(kPpm * whole);

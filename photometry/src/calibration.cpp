@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "astroid/core/digitise.hpp"
@@ -55,7 +56,15 @@ FrameCalibration::FrameCalibration(const PixelLayout& layout, const CalibrationM
       if (prescan_[node].empty() || prescan_[node].back() != r) prescan_[node].push_back(r);
     }
   }
-  fewest_prescan_ = *std::min_element(prescan_pixels.begin(), prescan_pixels.begin() + nodes.count());
+  // Nodes through which no light-sensitive pixel is read need no bias.
+  std::array<bool, kMostNodes> used{};
+  for (const Rectangle& area : regions)
+    if (is_light_sensitive(area))
+      for (const int x : {area.x0, area.x1() - 1})
+        for (const int y : {area.y0, area.y1() - 1}) used[static_cast<std::size_t>(nodes.of(x, y))] = true;
+  fewest_prescan_ = std::numeric_limits<std::size_t>::max();
+  for (std::size_t node = 0; node < used.size(); ++node)
+    if (used[node]) fewest_prescan_ = std::min(fewest_prescan_, prescan_pixels[node]);
   if (model.measure_bias && fewest_prescan_ == 0)
     throw no_reference("Photometry/Calibration/Bias", "prescan", "prescan columns on the side of every node",
                        "the detector has no pixels that show the bias of each of its nodes");

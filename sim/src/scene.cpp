@@ -224,7 +224,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
-  s.brightest_column = brightest_column_bound(*this);
+  if (ccd.smearing.model != SmearingModel::kNone) s.brightest_column = brightest_column_bound(*this);
 }
 
 Seconds Scene::mid_time(std::int64_t exposure) const {

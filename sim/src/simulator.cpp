@@ -342,14 +342,18 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
 void Simulator::deliver(ExposureState& state) const {
   if (state.more == nullptr) return;
   const PixelLayout& delivered = *scene_->layout();
+  // Effects may have added regions behind the exposed ones that are delivered, before the reference regions.
+  const std::size_t exposed = delivered.exposed_regions().size();
+  const std::size_t added = plan_->layout->exposed_regions().size() - exposed;
   for (std::size_t r = 0; r < delivered.regions().size(); ++r) {
     const Rectangle& region = delivered.regions()[r];
-    const auto first = static_cast<std::size_t>(region.x0 - plan_->layout->regions()[r].x0);
+    const std::size_t computed = r < exposed ? r : r + added;
+    const auto first = static_cast<std::size_t>(region.x0 - plan_->layout->regions()[computed].x0);
     for (int y = region.y0; y < region.y1(); ++y) {
       const auto width = static_cast<std::size_t>(region.nx);
-      std::ranges::copy(state.more->pixels.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->pixels.view(computed).row(y).subspan(first, width),
                         state.frame.pixels.view(r).row(y).begin());
-      std::ranges::copy(state.more->flags.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->flags.view(computed).row(y).subspan(first, width),
                         state.frame.flags.view(r).row(y).begin());
     }
   }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "astroid/core/math.hpp"
 #include "astroid/core/response.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -22,7 +23,12 @@ EffectNeed NonLinearity::is_needed(const SceneSummary& scene) const {
   const double constant = std::fabs(response.a0) * gain * scene.aperture_pixels;
   const double bias = constant + relative * (flux + scene.background * scene.aperture_pixels);
   const double tolerance = scene.tightest_tolerance();
-  return {constant > tolerance || relative > scene.accuracy,
+  // What is bent is the signal of an exposure, noise included.
+  constexpr double kSigmas = 5.0;
+  const double faintest = scene.faintest_target_electrons;
+  const double noise = det::sqrt(faintest + scene.aperture_pixels * scene.pixel_noise_variance);
+  const double allowed = faintest > 0.0 ? scene.accuracy / (1.0 + kSigmas * noise / faintest) : 0.0;
+  return {constant > tolerance || relative > allowed,
           fmt::format(
               "bends a signal of {:.4g} ADU, the brightest pixel, by at most {:.3g} ppm, every pixel by {:.3g} ADU; "
               "the accuracy asked for is {:.3g} ppm",

@@ -111,6 +111,7 @@ std::vector<test::EffectScene> scenes() {
           [](Mission& m) {
             m.ccd.nodes.count = 4;
             m.ccd.nodes.cross_talk = 0.01;
+            m.ccd.reference = {.prescan = 4, .serial_overscan = 4, .parallel_overscan = 6};
           },
           [](Mission& m) { m.ccd.nodes.cross_talk = 0.0; }),
       scene(

@@ -109,8 +109,8 @@ TEST(FrameCalibration, StraightensEachNodeWithItsOwnBiasAndGain) {
   const FrameCalibration calibration(*layout, model);
   const auto bias = [](int x) { return x >= 10 ? kBias - 20.0 : kBias + 4.0; };
   const auto factor = [](int x) { return x >= 10 ? 1.03 : 1.0; };
-  Frame frame = frame_with(
-      layout, [&](int x, int, double signal) { return bias(x) + model.response.out(signal / factor(x)); });
+  Frame frame =
+      frame_with(layout, [&](int x, int, double signal) { return bias(x) + model.response.out(signal / factor(x)); });
   FrameCalibration::Scratch scratch;
   calibration.apply(frame, scratch);
   expect_pixels(
@@ -126,12 +126,20 @@ TEST(FrameCalibration, SaysWhichReferencePixelsAreMissing) {
   model.subtract_smearing = true;
   EXPECT_THROW(FrameCalibration(bare, model), InputError);
   // With two nodes, both sides are wanted.
-  const PixelLayout left({{2, 5, 6, 6}, {-5, 5, 5, 6}});
+  const PixelLayout left({{2, 5, 12, 6}, {-5, 5, 5, 6}});
   model.subtract_smearing = false;
   model.measure_bias = true;
   EXPECT_NO_THROW(FrameCalibration(left, model));
   model.nodes = 2;
   EXPECT_THROW(FrameCalibration(left, model), InputError);
+}
+
+TEST(FrameCalibration, NeedsNoBiasOfNodesThatReadNothing) {
+  const PixelLayout lower({{2, 5, 6, 6}}, {{-5, 5, 5, 6}, {20, 5, 5, 6}});  // the upper half is not computed
+  CalibrationModel model = plain_model();
+  model.nodes = 4;
+  model.measure_bias = true;
+  EXPECT_DOUBLE_EQ(FrameCalibration(lower, model).bias_variance(), (2500.0 + 625.0 / 12.0) / 30.0);
 }
 
 TEST(ReadoutNodes, CoverEveryPixelOnce) {
