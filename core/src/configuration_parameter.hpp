@@ -101,6 +101,7 @@ std::vector<Parameter> sky_parameters();
 std::vector<Parameter> ccd_parameters();
 std::vector<Parameter> cmos_parameters();
 std::vector<Parameter> pixel_effect_parameters();
+std::vector<Parameter> readout_parameters();
 std::vector<Parameter> photometry_parameters();
 std::vector<Parameter> analysis_parameters();
 std::vector<Parameter> output_parameters();

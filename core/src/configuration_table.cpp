@@ -27,6 +27,11 @@ constexpr std::array kSections = {
     Section{"CCD", "The detector and its electronics."},
     Section{"CCD/OpticalAxis",
             "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
+    Section{"CCD/ReferencePixels", "Pixels that are read with the light-sensitive ones but see no light."},
+    Section{"CCD/Smearing", "Light that falls on charge while it is moved, in a detector without a shutter."},
+    Section{"CCD/Nodes", "Amplifiers that read parts of the detector at the same time."},
+    Section{"CCD/Electronics", "What the electronics do to the signal between the nodes and the converter."},
+    Section{"CCD/BadPixels", "Pixels that do not work, at places drawn once."},
     Section{"CCD/SubField", "The part of the detector that is simulated; without this element all of it."},
     Section{"CCD/FlatField", "A pattern of sensitivity with a power-law spatial spectrum, beside the white PRNU."},
     Section{"CCD/ChargeInjection", "Lines of charge that keep traps filled."},
@@ -45,9 +50,10 @@ constexpr std::array kSections = {
 
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
-  for (auto part : {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters,
-                    psf_parameters, stellar_field_parameters, sky_parameters, ccd_parameters, pixel_effect_parameters,
-                    cmos_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+  for (auto part :
+       {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters, psf_parameters,
+        stellar_field_parameters, sky_parameters, ccd_parameters, pixel_effect_parameters, readout_parameters,
+        cmos_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

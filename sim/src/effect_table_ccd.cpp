@@ -1,10 +1,13 @@
 #include "effect_table_builder.hpp"
 #include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
+#include "effects/bad_pixels.hpp"
 #include "effects/bias.hpp"
+#include "effects/bias_drift.hpp"
 #include "effects/brighter_fatter.hpp"
 #include "effects/charge_injection.hpp"
 #include "effects/cosmic_rays.hpp"
+#include "effects/cross_talk.hpp"
 #include "effects/cti.hpp"
 #include "effects/dark_current.hpp"
 #include "effects/drift.hpp"
@@ -13,12 +16,14 @@
 #include "effects/gain.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
+#include "effects/nonlinearity.hpp"
 #include "effects/photon_noise.hpp"
 #include "effects/prnu.hpp"
 #include "effects/proper_motion_effect.hpp"
 #include "effects/readout_noise.hpp"
 #include "effects/repointing.hpp"
 #include "effects/sky.hpp"
+#include "effects/smearing.hpp"
 #include "effects/stars.hpp"
 #include "effects/stray_light.hpp"
 #include "effects/variable_stars.hpp"
@@ -33,9 +38,11 @@ using CcdTable =
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
                 Stars, VariableStars,                                                                  // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
-                FlatField, Prnu, DarkCurrent, ChargeInjection,                                         // PixelMean
-                PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,                                // PixelSample
-                ReadoutNoise, GainEffect, BiasEffect, Adc>;                                            // Readout
+                FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, ChargeInjection, OpenShutterSmearing,
+                FrameTransferSmearing,                                   // PixelMean
+                PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,  // PixelSample
+                ReadoutNoise, GainEffect, CrossTalk, NonLinearity, BiasEffect, BiasDrift, RowOffset, BadPixelMap,
+                Adc>;  // Readout
 
 }  // namespace
 

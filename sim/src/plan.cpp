@@ -9,6 +9,7 @@
 #include <span>
 #include <utility>
 
+#include "astroid/core/digitise.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/sim/effect_table.hpp"
 #include "plan_cost.hpp"
@@ -58,8 +59,8 @@ std::string describe_delivered(const Scene& scene) {
   const CcdSettings& ccd = scene.mission().ccd;
   if (ccd.window > 0)
     return fmt::format("{} windows of {} x {} px ({} px in all) of the {} x {} px detector",
-                       scene.layout()->regions().size(), ccd.window, ccd.window, scene.layout()->size(), ccd.columns,
-                       ccd.rows);
+                       scene.layout()->exposed_regions().size(), ccd.window, ccd.window, scene.layout()->size(),
+                       ccd.columns, ccd.rows);
   if (ccd.has_sub_field)
     return fmt::format("sub-field of {} x {} px from ({}, {}) of the {} x {} px detector", ccd.sub_columns,
                        ccd.sub_rows, ccd.sub_x0, ccd.sub_y0, ccd.columns, ccd.rows);
@@ -72,6 +73,20 @@ std::string describe_pixels(const Scene& scene, const Plan& plan) {
     text +=
         fmt::format("; {} px are computed, since charge and light of those outside reach them", plan.layout->size());
   return text;
+}
+
+/// Rounding is noise of gain / sqrt(12) only where something blurs its steps (N25).
+void note_coarse_converter(const Scene& scene, std::vector<std::string>& approximations) {
+  constexpr double kLeastNoise = 0.5;  // ADU
+  const SceneSummary& s = scene.summary();
+  const double gain = scene.mission().ccd.gain.value();
+  const double quantisation = gain / kSqrt12;
+  const double noise = det::sqrt(std::max(0.0, s.pixel_noise_variance - quantisation * quantisation)) / gain;
+  if (noise >= kLeastNoise) return;
+  approximations.push_back(fmt::format(
+      "the noise of a dark pixel is {:.3g} ADU: below {} ADU the error of rounding depends on the signal and "
+      "is not the noise of gain / sqrt(12) that is predicted",
+      noise, kLeastNoise));
 }
 
 }  // namespace
@@ -169,6 +184,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   if (moves) plan_jitter(scene, kShares.jitter, plan);
   if (moves && steady) plan_polynomial(scene, kShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan);
+  note_coarse_converter(scene, plan.approximations);
   predict_times(plan, scene, costs);
   plan.memory_bytes = predicted_memory(plan);
   return plan;

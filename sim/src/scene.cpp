@@ -18,6 +18,7 @@
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
 #include "astroid/core/sphere.hpp"
+#include "astroid/sim/smearing.hpp"
 #include "effects/drift.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/repointing.hpp"
@@ -302,6 +303,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
   if (ccd.charge_injection.every_rows > 0) s.peak_pixel_bound += ccd.charge_injection.level.value();
+  if (ccd.smearing.model != SmearingModel::kNone) s.brightest_column = brightest_column_bound(*this);
 }
 
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {

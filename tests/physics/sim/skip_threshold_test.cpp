@@ -125,6 +125,17 @@ INSTANTIATE_TEST_SUITE_P(
                              15.0},
                     SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); },
                              10.0},
+                    SkipCase{"open-shutter-smearing",
+                             [](Mission& m, double v) {
+                               m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(v)};
+                             },
+                             10.0},
+                    SkipCase{"frame-transfer-smearing",
+                             [](Mission& m, double v) {
+                               m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(v)};
+                               m.ccd.smearing.clear_time = Seconds(0.0);
+                             },
+                             10.0},
                     SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
     [](const testing::TestParamInfo<SkipCase>& parameter) {
       std::string name = parameter.param.effect;
@@ -199,6 +210,86 @@ TEST(SkippedBelowThreshold, FullWellIsNeverReached) {
     EXPECT_TRUE(std::ranges::equal(a.frame.pixels.pixels(), b.frame.pixels.pixels()));
     EXPECT_EQ(b.lost_electrons, 0.0);
   }
+}
+
+/// Analogue signal in 6 x 6 px around each star, in electrons.
+std::vector<double> read_fluxes(const Planned& p, const std::shared_ptr<const Plan>& plan, std::int64_t exposure) {
+  const Simulator simulator(p.scene, plan, 0);
+  ExposureState state = simulator.make_state();
+  simulator.simulate(exposure, state, [](const EffectSpec&, const ExposureState&) {});  // so that planes are whole
+  std::vector<double> sums;
+  for (const SceneStar& star : p.scene->stars()) {
+    double sum = 0.0;
+    const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
+    const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
+    for (int y = y0; y < y0 + 6; ++y)
+      for (int x = x0; x < x0 + 6; ++x) sum += state.analog.whole().view(0).at(x, y);
+    sums.push_back(sum * p.scene->mission().ccd.gain.value());
+  }
+  return sums;
+}
+
+class ReadoutSkippedBelowThreshold : public testing::TestWithParam<SkipCase> {};
+
+TEST_P(ReadoutSkippedBelowThreshold, IsHarmless) {
+  const SkipCase& c = GetParam();
+  const double strength = threshold(c.effect, c.set, c.high);
+  ASSERT_GT(strength, 0.0) << "the effect is never left out";
+  Mission mission = quiet_mission();
+  c.set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs(c.effect));
+  double worst = 0.0;
+  for (const std::int64_t exposure : {3, 11}) {  // the draws of both are the same
+    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
+    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, c.effect), exposure);
+    for (std::size_t i = 0; i < with.size(); ++i)
+      worst = std::max(
+          worst, std::abs(with[i] - without[i]) / p.scene->summary().flux_tolerance(p.scene->stars()[i].electrons));
+  }
+  std::printf("%s at %.3g: moves a flux by at most %.2f of its tolerance\n", c.effect, strength, worst);
+  EXPECT_LE(worst, 1.0);
+  EXPECT_GT(worst, 0.0) << "the effect did nothing: was it run?";
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, ReadoutSkippedBelowThreshold,
+                         testing::Values(SkipCase{"non-linearity",
+                                                  [](Mission& m, double v) {
+                                                    m.ccd.electronics.nonlinearity = {0.0, v, 0.0};
+                                                  },
+                                                  1.0},
+                                         SkipCase{"bias-drift",
+                                                  [](Mission& m, double v) { m.ccd.electronics.bias_drift = v; }, 10.0},
+                                         SkipCase{"cross-talk",
+                                                  [](Mission& m, double v) {
+                                                    m.ccd.nodes.count = 4;
+                                                    m.ccd.nodes.cross_talk = v;
+                                                  },
+                                                  0.1}),
+                         [](const testing::TestParamInfo<SkipCase>& parameter) {
+                           std::string name = parameter.param.effect;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(SkippedBelowThreshold, RowOffsetIsHarmless) {
+  const auto set = [](Mission& m, double adu) { m.ccd.electronics.row_offset = adu; };
+  const double strength = threshold("row-offset", set, 100.0);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs("row-offset"));
+  double square = 0.0;
+  for (std::int64_t exposure = 0; exposure < mission.simulation.exposures; ++exposure) {
+    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
+    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, "row-offset"), exposure);
+    const double difference = with.front() - without.front();  // the faintest star
+    square += difference * difference / static_cast<double>(mission.simulation.exposures);
+  }
+  // The variance that 32 exposures show scatters by 25 %.
+  EXPECT_LE(square, 2.0 * kVarianceTolerance * p.scene->summary().faintest_target_electrons);
+  EXPECT_GT(square, 0.0);
 }
 
 }  // namespace

@@ -38,6 +38,34 @@ std::vector<Switch> switches() {
       {"few bits", [](Mission& m) { m.ccd.adc_bits = 12; }},
       {"full well", [](Mission& m) { m.ccd.full_well = Electrons(90000.0); }},
       {"no blooming", [](Mission& m) { m.ccd.blooming = false; }},
+      {"reference pixels",
+       [](Mission& m) { m.ccd.reference = {.prescan = 4, .serial_overscan = 3, .parallel_overscan = 5}; }},
+      {"open shutter", [](Mission& m) { m.ccd.smearing.model = SmearingModel::kOpenShutter; }},
+      {"frame transfer",
+       [](Mission& m) {
+         m.ccd.smearing.model = SmearingModel::kFrameTransfer;
+         m.ccd.smearing.clear_time = Seconds(0.0);
+       }},
+      {"two nodes",
+       [](Mission& m) {
+         m.ccd.nodes = {.count = 2, .gain_factor = {1.0, 1.15}, .noise_factor = {1.0, 0.0}, .cross_talk = 1e-3};
+       }},
+      {"four nodes",
+       [](Mission& m) {
+         m.ccd.nodes = {.count = 4, .gain_factor = {}, .noise_factor = {2.0, 1.0, 1.0, 1.0}, .cross_talk = -1e-2};
+       }},
+      {"non-linearity",
+       [](Mission& m) {
+         m.ccd.electronics.nonlinearity = {0.3, -0.0043, 2.4e-7};
+       }},
+      {"drifts",
+       [](Mission& m) {
+         m.ccd.electronics.gain_drift = 0.01;
+         m.ccd.electronics.bias_drift = 20.0;
+         m.ccd.electronics.drift_period = Seconds(60.0);
+       }},
+      {"row offsets", [](Mission& m) { m.ccd.electronics.row_offset = 3.0; }},
+      {"bad pixels", [](Mission& m) { m.ccd.bad_pixels = {.dead = 0.05, .hot = 0.05}; }},
       {"jitter",
        [](Mission& m) {
          m.satellite.jitter.model = JitterModel::kRedNoise;

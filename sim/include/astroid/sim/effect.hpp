@@ -23,6 +23,7 @@
 namespace astroid {
 
 class Scene;
+class SmearedColumns;
 struct PlanKnobs;
 
 /// Levels of the chain, in the order of the run.
@@ -114,10 +115,14 @@ struct CameraState {
   std::vector<Strip> strips;                                      ///< of the layout
   std::vector<std::vector<std::vector<RenderedStar>>> stars;      ///< [strip][area]: those that may reach it
   std::vector<std::vector<std::vector<RenderedStar>>> variables;  ///< likewise those whose flux varies
-  Plane<float, unit::Relative> prnu;           ///< pixel response, mean 1; empty when the effect is off
-  Plane<float, unit::Relative> flat_field;     ///< its large-scale part, mean 1; empty when the effect is off
-  Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
-  CmosPatterns cmos;                           ///< of a CMOS detector
+  Plane<float, unit::Relative> prnu;                ///< pixel response, mean 1; empty when the effect is off
+  Plane<float, unit::Relative> flat_field;          ///< its large-scale part, mean 1; empty when the effect is off
+  Plane<float, unit::ExpectedElectrons> dark;       ///< dark electrons per exposure; empty when the effect is off
+  std::shared_ptr<const SmearedColumns> smearing;   ///< of the columns of the layout
+  Plane<float, unit::ExpectedElectrons> unsmeared;  ///< what frame transfer smears less than that; empty: nothing
+  std::vector<std::uint32_t> dead_pixels;           ///< places in the buffer of the layout, rising
+  std::vector<std::uint32_t> hot_pixels;
+  CmosPatterns cmos;  ///< of a CMOS detector
 };
 
 /// Everything that belongs to one exposure of one camera. One worker owns it.

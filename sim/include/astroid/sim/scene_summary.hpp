@@ -27,6 +27,7 @@ struct SceneSummary {
   double brightest_electrons = 0.0;  ///< per exposure
   double brightest_magnitude = 0.0;
   double peak_pixel_bound = 0.0;  ///< e-, upper bound of any pixel's expectation
+  double brightest_column = 0.0;  ///< e-, upper bound of the light of any column
   double faintest_target_electrons = 0.0;
   double brightest_target_electrons = 0.0;  ///< of those that do not saturate
   double sky = 0.0;                         ///< on the axis in the middle of the run, e- per pixel and exposure

@@ -25,7 +25,8 @@ struct ReferencePixels {
 /// Light that falls on the pixels while charge is moved.
 struct SmearingSettings {
   SmearingModel model = SmearingModel::kNone;
-  Seconds time{4.019};  ///< of moving a whole frame past the light
+  Seconds time{4.019};        ///< of moving all rows past the light, after the exposure
+  Seconds clear_time{4.019};  ///< the same before the exposure; of frame transfer alone
 
   friend bool operator==(const SmearingSettings&, const SmearingSettings&) = default;
 };
@@ -92,13 +93,13 @@ struct NodeSettings {
   int count = 1;                     ///< 1, 2 or 4
   std::vector<double> gain_factor;   ///< of each, relative to the gain
   std::vector<double> noise_factor;  ///< of each, relative to the readout noise
-  double cross_talk = 0.0;           ///< of one node's signal into the others
+  double cross_talk = 0.0;           ///< share of one node's signal that the others gain
 
   friend bool operator==(const NodeSettings&, const NodeSettings&) = default;
 };
 
 struct ElectronicsSettings {
-  std::vector<double> nonlinearity;  ///< a0, a1, a2 of ADU' = ADU + a0 + a1 ADU + a2 ADU²
+  std::vector<double> nonlinearity;  ///< a0, a1, a2 of ADU' = ADU + a0 + a1 ADU + a2 ADU²; none: linear
   double gain_drift = 0.0;           ///< relative, amplitude over one period
   double bias_drift = 0.0;           ///< ADU, amplitude over one period
   Seconds drift_period{86400.0};
