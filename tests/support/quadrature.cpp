@@ -55,11 +55,29 @@ long double refine(const std::function<long double(long double)>& f, long double
   return refine(f, from, middle, relative, depth - 1) + refine(f, middle, to, relative, depth - 1);
 }
 
+Integral refine_absolute(const std::function<long double(long double)>& f, long double from, long double to,
+                         long double absolute, int depth) {
+  constexpr long double kRounding = 1e-18L;
+  const Estimate whole = kronrod(f, from, to);
+  if (depth == 0 || whole.error <= absolute || whole.error <= kRounding * whole.absolute)
+    return {whole.value, whole.error};
+  const long double middle = 0.5L * (from + to);
+  Integral sum = refine_absolute(f, from, middle, 0.5L * absolute, depth - 1);
+  sum += refine_absolute(f, middle, to, 0.5L * absolute, depth - 1);
+  return sum;
+}
+
+constexpr int kDeepest = 24;
+
 }  // namespace
+
+Integral integrate_absolute(const std::function<long double(long double)>& f, long double from, long double to,
+                            long double absolute) {
+  return refine_absolute(f, from, to, absolute, kDeepest);
+}
 
 long double integrate(const std::function<long double(long double)>& f, long double from, long double to,
                       long double relative) {
-  constexpr int kDeepest = 24;
   return refine(f, from, to, relative, kDeepest);
 }
 

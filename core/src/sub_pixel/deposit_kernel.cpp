@@ -11,8 +11,8 @@ namespace astroid::detail {
 
 namespace {
 
-constexpr double kAccuracy = 1e-14;
-constexpr double kWidestBand = 0.4;  // cycles per node; closer to 0.5 the kernel would grow without limit
+constexpr double kAccuracy = 1e-15;
+constexpr double kWidestBand = 0.42;  // cycles per node; closer to 0.5 the kernel would grow without limit
 
 }  // namespace
 

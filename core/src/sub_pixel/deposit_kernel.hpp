@@ -11,12 +11,13 @@ namespace astroid::detail {
 ///
 /// A star at x nodes leaves phi(m - x) on node m; the spectrum of the nodes, divided by transform(f), is that of a point
 /// at x: e^(-2 pi i f x) for every |f| up to `band`.
-/// @accuracy  1e-13 of the star (test: DepositKernel.MakesAStarAPurePhaseRamp), for any x: nothing is snapped.
+/// @accuracy  of the star: 1e-14 in the inner half of the band, 1e-12 at its edge, where a PSF leaves little
+///            (test: DepositKernel.MakesAStarAPurePhaseRamp), for any x: nothing is snapped.
 /// @source Beatty2005 Eq. 5 for the shape; Barnett2019 for the error, e^(-pi width sqrt(1 - 2 band)).
 class DepositKernel {
  public:
-  static constexpr std::size_t kWidest = 24;
-  /// @param band  highest frequency wanted, cycles per node, below 0.4.
+  static constexpr std::size_t kWidest = 28;
+  /// @param band  highest frequency wanted, cycles per node, at most 0.42.
   explicit DepositKernel(double band);
 
   /// Nodes that a star touches, and what it leaves on each.

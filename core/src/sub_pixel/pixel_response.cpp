@@ -6,6 +6,7 @@
 
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
+#include "astroid/core/statistics/sums.hpp"
 #include "astroid/core/units.hpp"
 
 namespace astroid {
@@ -17,13 +18,9 @@ using Complex = std::complex<double>;
 // sum over terms of product of an axis' profile with itself, divided by the mean.
 PixelResponse from_profile(int cells, double constant, const std::vector<double>& profile) {
   PixelResponse response{.cells = cells, .sensitivity = {}};
-  double sum = 0.0;
   for (const double y : profile)
-    for (const double x : profile) {
-      response.sensitivity.push_back(constant + (1.0 - constant) * (x * y));
-      sum += response.sensitivity.back();
-    }
-  const double mean = sum / static_cast<double>(response.sensitivity.size());
+    for (const double x : profile) response.sensitivity.push_back(constant + (1.0 - constant) * (x * y));
+  const double mean = pairwise_sum(response.sensitivity) / static_cast<double>(response.sensitivity.size());
   for (double& value : response.sensitivity) value /= mean;
   return response;
 }

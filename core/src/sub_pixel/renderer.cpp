@@ -74,7 +74,8 @@ struct SubPixelRenderer::Design {
                                                .cells = cells,
                                                .margin = static_cast<int>(std::ceil(reach)) + 1,
                                                .memory_bytes = settings.memory_bytes})),
-        kernel(kBandPerNode),
+        kernel(std::max(static_cast<double>(last_frequency(grid.period_x)) / (sub_pixels * grid.period_x),
+                        static_cast<double>(last_frequency(grid.period_y)) / (sub_pixels * grid.period_y))),
         map_transform(map_nodes(grid.period_x), map_nodes(grid.period_y)),
         cell_transform(cell_nodes(grid.period_x), cell_nodes(grid.period_y)) {
     make_transfer(settings.response);
@@ -82,6 +83,9 @@ struct SubPixelRenderer::Design {
 
   [[nodiscard]] std::size_t map_nodes(int period) const { return static_cast<std::size_t>(period * sub_pixels); }
   [[nodiscard]] std::size_t cell_nodes(int period) const { return static_cast<std::size_t>(period * cells); }
+
+  // A sum over frequencies up to this one reaches half a step farther: to the band at least.
+  [[nodiscard]] long last_frequency(int period) const { return static_cast<long>(std::ceil(band * period - 0.5)); }
 
   void make_transfer(const PixelResponse& response);
   void deposit(PixelPosition star, double electrons, std::span<double> map) const;
@@ -109,8 +113,8 @@ struct SubPixelRenderer::Design {
 // which correlates rather than convolves: the conjugate), the way from the map's nodes to the cells' centres, and the
 // division by the transform of the spread.
 void SubPixelRenderer::Design::make_transfer(const PixelResponse& response) {
-  const auto last_x = static_cast<long>(std::floor(band * grid.period_x));
-  const auto last_y = static_cast<long>(std::floor(band * grid.period_y));
+  const long last_x = last_frequency(grid.period_x);
+  const long last_y = last_frequency(grid.period_y);
   kx = frequencies(0, last_x, grid.period_x);
   ky = frequencies(-last_y, last_y, grid.period_y);
   transfer.resize(kx.size() * ky.size());

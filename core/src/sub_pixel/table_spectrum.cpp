@@ -149,7 +149,8 @@ double TableSpectrum::error_beyond(double band) const {
   const PixelPosition upper = spline_.upper();
   // One period holds the table and the widest square, so that no light of the next star gets in.
   const double period = std::ceil(std::max(upper.x - lower.x, upper.y - lower.y)) + kWidths.back() + 2.0;
-  const auto most = static_cast<std::size_t>(std::floor(band * period));
+  // Sums over frequencies up to `most` reach half a step farther: no farther than the band.
+  const auto most = static_cast<std::size_t>(std::max(0.0, std::floor(band * period - 0.5)));
   std::vector<double> kx(most + 1);
   std::vector<double> ky(2 * most + 1);
   for (std::size_t i = 0; i <= most; ++i) kx[i] = static_cast<double>(i) / period;

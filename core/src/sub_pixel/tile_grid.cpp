@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "astroid/core/error.hpp"
-#include "astroid/core/math.hpp"
 #include "sub_pixel/fourier_transform.hpp"
 
 namespace astroid::detail {
@@ -37,7 +36,7 @@ Axis choose_axis(int length, int margin, int longest) {
     const int tile = (length + tiles - 1) / tiles;
     const auto period = static_cast<int>(FourierTransform::good_size(static_cast<std::size_t>(tile + 2 * margin)));
     if (period <= longest) {
-      const double work = static_cast<double>(tiles) * period * det::log(period + 1.0);
+      const double work = static_cast<double>(tiles) * period;
       if (work < least) {
         least = work;
         best = {tile, period};

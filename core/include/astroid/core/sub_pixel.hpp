@@ -20,7 +20,7 @@ struct SubPixelSettings {
   double accuracy = 1e-7;  ///< allowed to the flux of a star in any square of pixels, relative to the star's flux
   int sub_pixels = 0;      ///< of the map, per pixel and axis; 0: from the accuracy
   int cells = 1;           ///< per pixel and axis in which the light is wanted: 1, or those of a response
-  PixelResponse response;  ///< the same in every pixel; folded into the PSF. Only where cells is 1
+  PixelResponse response{};  ///< the same in every pixel; folded into the PSF. Only where cells is 1
   double memory_bytes = 128.0 * 1024.0 * 1024.0;  ///< of the maps of one worker; smaller tiles where they do not fit
 };
 
