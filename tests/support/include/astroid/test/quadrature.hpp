@@ -27,8 +27,8 @@ Density gaussian_density(long double sigma);
 /// An integral and how well it is known.
 struct Integral {
   long double value = 0.0L;
-  long double error = 0.0L;  ///< sum over the panels of the difference of the 15- and the 7-point rule: far above the
-                             ///< true error, since the 15-point rule is what is used
+  long double error = 0.0L;  ///< sum over the panels of the difference of the two rules: far above the true error, since
+                             ///< the better one is used
   Integral& operator+=(const Integral& other) {
     value += other.value;
     error += other.error;
@@ -36,7 +36,7 @@ struct Integral {
   }
 };
 
-/// The same rule, refined until each panel's difference is below its share of `absolute`, or below 1e-18 of its own
+/// First the 7-point Kronrod rule about 3 Gauss points; where that isn't enough, the larger rule, refined until each panel's difference is below its share of `absolute`, or below 1e-18 of its own
 /// integral of |f|, which is rounding.
 Integral integrate_absolute(const std::function<long double(long double)>& f, long double from, long double to,
                             long double absolute);
