@@ -143,11 +143,10 @@ class TableSpectrum final : public PsfSpectrum {
 // The flux in squares by the frequencies within the band, against the exact one.
 double TableSpectrum::error_beyond(double band) const {
   constexpr std::array<double, 4> kWidths = {1.0, 2.0, 3.0, 5.0};  // px
-  constexpr std::size_t kPhases = 6;
-  constexpr double kGolden = 0.61803398874989484820;  // spreads the phases so that they meet no symmetry
+  constexpr std::size_t kPhases = 8;
   const PixelPosition lower = spline_.lower();
   const PixelPosition upper = spline_.upper();
-  // One period holds the table and the widest square, so that no light of the next star gets in.
+  // One period holds the table and a square at each border, so that no light of the next star gets in.
   const double period = std::ceil(std::max(upper.x - lower.x, upper.y - lower.y)) + kWidths.back() + 2.0;
   // Sums over frequencies up to `most` reach half a step farther: no farther than the band.
   const auto most = static_cast<std::size_t>(std::max(0.0, std::floor(band * period - 0.5)));
@@ -161,25 +160,40 @@ double TableSpectrum::error_beyond(double band) const {
   const auto square = [](double k, double width) {
     return k == 0.0 ? width : det::sin(kPi * k * width) / (kPi * k);
   };
+  // Squares about the star, and at the borders of the table, where its light may end in a step.
+  const std::array<double, 3> columns = {0.0, lower.x, upper.x};
+  const std::array<double, 3> lines = {0.0, lower.y, upper.y};
+  // The first is worst where light ends in a step: on the edge of a pixel. The others are no multiples of anything.
+  const auto phase_of = [](std::size_t phase) {
+    constexpr double kGolden = 0.61803398874989484820;
+    const double turns = kGolden * static_cast<double>(phase);
+    return turns - std::floor(turns) - 0.5;
+  };
+  std::vector<Complex> ramps;
+  for (std::size_t r = 0; r < kPhases * lines.size(); ++r)
+    for (const double k : ky) ramps.push_back(turn(k * (lines[r % lines.size()] + phase_of(r / lines.size()))));
   double worst = 0.0;
   std::vector<Complex> rows(ky.size());
-  for (std::size_t px = 0; px < kPhases; ++px) {
-    const double x = kGolden * (static_cast<double>(px) + 0.5) - std::floor(kGolden * (static_cast<double>(px) + 0.5)) - 0.5;
+  std::vector<Complex> weight(kx.size());
+  for (std::size_t p = 0; p < kPhases * columns.size(); ++p) {
+    const double x = columns[p % columns.size()] + phase_of(p / columns.size());  // of the square's centre
     for (const double width : kWidths) {
-      std::vector<Complex> weight(kx.size());
+      std::vector<double> square_y(ky.size());
+      std::ranges::transform(ky, square_y.begin(), [&](double k) { return square(k, width); });
       for (std::size_t i = 0; i < kx.size(); ++i)
-        weight[i] = (i == 0 ? 1.0 : 2.0) * square(kx[i], width) * turn(-kx[i] * x);
+        weight[i] = (i == 0 ? 1.0 : 2.0) * square(kx[i], width) * turn(kx[i] * x);
       // The half plane kx < 0 mirrors the other: twice the real part of the sum over ky.
       for (std::size_t q = 0; q < ky.size(); ++q)
-        rows[q] = std::inner_product(weight.begin(), weight.end(), h.begin() + static_cast<std::ptrdiff_t>(q * kx.size()),
-                                     Complex{});
-      for (std::size_t py = 0; py < kPhases; ++py) {
-        const double y = (static_cast<double>(py) + 0.5) / kPhases - 0.5 + 0.3 * x / kPhases;
+        rows[q] = std::inner_product(weight.begin(), weight.end(),
+                                     h.begin() + static_cast<std::ptrdiff_t>(q * kx.size()), Complex{});
+      for (std::size_t r = 0; r < kPhases * lines.size(); ++r) {
+        const double y = lines[r % lines.size()] + phase_of(r / lines.size());
+        const Complex* ramp = &ramps[r * ky.size()];
         double flux = 0.0;
-        for (std::size_t q = 0; q < ky.size(); ++q)
-          flux += (rows[q] * turn(-ky[q] * y)).real() * square(ky[q], width);
+        for (std::size_t q = 0; q < ky.size(); ++q) flux += (rows[q] * ramp[q]).real() * square_y[q];
         flux /= period * period;
-        const double exact = spline_.flux({-0.5 * width - x, -0.5 * width - y}, {0.5 * width - x, 0.5 * width - y});
+        const double exact =
+            spline_.flux({x - 0.5 * width, y - 0.5 * width}, {x + 0.5 * width, y + 0.5 * width});
         worst = std::max(worst, std::abs(flux - exact));
       }
     }

@@ -49,7 +49,7 @@ struct Optics {
   std::vector<int> squares;  // px, in which light is compared
 };
 
-/// Two Gaussians, one wide and off centre, and a halo that ends at the border: no symmetry, wings.
+/// Two Gaussians, one of them off centre: no symmetry. The light ends before the table does.
 PsfTable made_up_table(double sigma, double samples_per_pixel) {
   const int n = 2 * static_cast<int>(std::ceil(6.0 * samples_per_pixel)) + 1;
   PsfTable table;
@@ -62,7 +62,7 @@ PsfTable made_up_table(double sigma, double samples_per_pixel) {
       const double u = (x - table.centre_x) / samples_per_pixel;
       const double v = (y - table.centre_y) / samples_per_pixel;
       const double core = std::exp(-0.5 * (u * u + 1.3 * v * v + 0.4 * u * v) / (sigma * sigma));
-      const double side = 0.1 * std::exp(-0.5 * ((u - 0.7) * (u - 0.7) + v * v) / (2.0 * sigma * sigma));
+      const double side = 0.1 * std::exp(-0.5 * ((u - 0.7) * (u - 0.7) + v * v) / (1.2 * sigma * sigma));
       table.samples.at(x, y) = core + side;
     }
   return table;
