@@ -20,6 +20,7 @@ constexpr std::array kSections = {
     Section{"Satellite/Jitter", "Attitude noise, shared by all cameras."},
     Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
     Section{"PSF", "The image of a star."},
+    Section{"PSF/IntraPixel", "Sensitivity within a pixel, relative to the pixel's mean."},
     Section{"StellarField", "The stars and the sky behind them."},
     Section{"CCD", "The detector and its electronics."},
     Section{"CCD/OpticalAxis",
@@ -35,7 +36,7 @@ constexpr std::array kSections = {
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part :
-       {simulation_parameters, satellite_parameters, telescope_parameters, psf_parameters, stellar_field_parameters,
+       {simulation_parameters, renderer_parameters, satellite_parameters, telescope_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters,
         ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }

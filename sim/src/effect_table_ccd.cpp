@@ -6,6 +6,7 @@
 #include "effects/dark_current.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
+#include "effects/intra_pixel_response.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/photon_noise.hpp"
@@ -13,6 +14,7 @@
 #include "effects/readout_noise.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
+#include "effects/sub_pixel_stars.hpp"
 
 namespace astroid {
 
@@ -32,8 +34,9 @@ struct Table {
 };
 
 using CcdTable = Table<JitterModelEffect, JitterFileEffect,         // Pointing
-                       Stars,                                       // Optics
+                       Stars, SubPixelStars,                        // Optics
                        Sky,                                         // Sky
+                       IntraPixelResponse,                          // SubPixel
                        Prnu, DarkCurrent,                           // PixelMean
                        PhotonNoise, FullWell,                       // PixelSample
                        ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout

@@ -216,14 +216,17 @@ Plan make_plan(const Scene& scene) {
   const bool steady = plan.epoch_exposures == 0 || plan.epoch_exposures >= kFewExposures;
   plan.still = !moves && steady;
   plan.tolerance = summary.tightest_tolerance();
-  plan.renderer = scene.mission().psf.model == PsfModel::kGaussian ? "analytic" : "prf";
-  plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
+  const SubPixelRenderer* map = scene.sub_pixel_renderer();
+  plan.renderer = to_string(scene.renderer().renderer);
+  plan.renderer_reason = scene.renderer().why;
+  plan.renderer_error = map != nullptr ? map->predicted_error() : scene.psf().approximation_error();
+  plan.psf_error = plan.renderer_error * summary.brightest_target_electrons;
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   plan_jitter(scene, kShares.jitter, moves, plan);
   if (steady) plan_polynomial(scene, kShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan, plan.approximations);
   plan.seconds_per_exposure = predicted_seconds(plan, scene);
-  plan.memory_bytes = predicted_memory(plan);
+  plan.memory_bytes = predicted_memory(plan, scene);
   return plan;
 }
 

@@ -1,6 +1,7 @@
 #include "plan_cost.hpp"
 
 #include <algorithm>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -35,6 +36,10 @@ struct StarCost {
   double broadening;  ///< factor
 };
 constexpr StarCost kAnalytic{.star = 70.0, .row = 5.0, .pixel = 0.1, .broadening = 1.7};
+/// Of the sub-pixel renderer (bench: BM_SubPixel).
+constexpr double kMapNode = 12.0;  ///< ns a node of the map
+constexpr double kDeposit = 1500.0;  ///< ns a star, once for each tile that it reaches
+constexpr double kMapCell = 10.0;  ///< ns a cell of the light
 constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5.0};
 constexpr double kNanosecond = 1e-9;
 
@@ -76,6 +81,25 @@ double stars_cost(const Plan& plan, const Scene& scene) {
   return nanoseconds * renderings(plan);
 }
 
+/// The sub-pixel renderer's time, for the tiles that touch some regions (none: all).
+double map_seconds(const Plan& plan, const Scene& scene, std::span<const Rectangle> regions) {
+  const SubPixelRenderer& map = *scene.sub_pixel_renderer();
+  double tiles = 0.0;
+  double pixels = 0.0;
+  for (const Rectangle& tile : map.tiles()) {
+    if (!regions.empty() &&
+        std::ranges::none_of(regions, [&](const Rectangle& region) { return !intersect(region, tile).empty(); }))
+      continue;
+    tiles += 1.0;
+    pixels += static_cast<double>(tile.size());
+  }
+  const double share = pixels / std::max(1.0, static_cast<double>(scene.detector().size()));
+  const double deposits = share * static_cast<double>(scene.summary().stars) * renderings(plan);
+  const double nodes = static_cast<double>(map.map_size());
+  const double cells = static_cast<double>(map.cells()) * map.cells();
+  return kNanosecond * (tiles * nodes * kMapNode + deposits * kDeposit + pixels * cells * kMapCell);
+}
+
 /// Whether the noiseless image is recalled rather than rendered.
 bool recalls(const Plan& plan) {
   return plan.still || plan.knobs.jitter == JitterTreatment::kPolynomial;
@@ -84,6 +108,7 @@ bool recalls(const Plan& plan) {
 }  // namespace
 
 double full_frame_seconds(const Plan& plan, const Scene& scene) {
+  if (scene.sub_pixel_renderer() != nullptr) return map_seconds(plan, scene, {});
   const StarCost& cost = star_cost(plan);
   const double strip_rows = std::max(1.0, static_cast<double>(kStripPixels) / scene.detector().nx);
   double nanoseconds = 0.0;
@@ -110,9 +135,11 @@ double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Sc
   if (!effect.need.needed) return 0.0;
   if (recalls(plan) && spec.level <= EffectLevel::kPixelMean) {
     const bool moves = plan.knobs.jitter == JitterTreatment::kPolynomial;
-    return spec.name == "stars" && moves ? maps_seconds(plan.knobs.polynomial.terms.size(), pixels) : 0.0;
+    return spec.role == ImageRole::kLight && spec.level == EffectLevel::kOptics && moves ? maps_seconds(plan.knobs.polynomial.terms.size(), pixels) : 0.0;
   }
   if (spec.name == "stars") return kNanosecond * stars_cost(plan, scene);
+  if (spec.name == "sub-pixel-stars" && scene.sub_pixel_renderer() != nullptr)
+    return map_seconds(plan, scene, plan.layout->exposed_regions());
   for (const PixelCost& cost : kPixelCosts)
     if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels;
   return 0.0;
@@ -127,11 +154,14 @@ double predicted_seconds(const Plan& plan, const Scene& scene) {
   return seconds;
 }
 
-double predicted_memory(const Plan& plan) {
+double predicted_memory(const Plan& plan, const Scene& scene) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
   if (plan.runs("full-well")) bytes_per_pixel += sizeof(double);  // drawn electrons, column by column
   constexpr double kStripPlanes = 3.0;                            // expected and drawn electrons, ADU
-  return bytes_per_pixel * static_cast<double>(plan.layout->size()) +
+  const SubPixelRenderer* map = scene.sub_pixel_renderer();
+  const bool whole = map != nullptr && !recalls(plan);  // expected electrons, tile by tile
+  if (whole) bytes_per_pixel += sizeof(double);
+  return (whole ? map->workspace_bytes() : 0.0) + bytes_per_pixel * static_cast<double>(plan.layout->size()) +
          kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);
 }
 

@@ -107,7 +107,11 @@ std::vector<std::size_t> full_frame_targets(const Scene& scene) {
 }
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
-    : mission_(mission), psf_(make_psf(mission)), attitude_(make_attitude(mission)) {
+    : mission_(mission),
+      renderer_(choose_renderer(mission)),
+      optical_psf_(make_psf(mission)),
+      psf_(make_recorded_psf(mission, optical_psf_)),
+      attitude_(make_attitude(mission)) {
   const CcdSettings& ccd = mission_.ccd;
   projection_.emplace(CameraPointing{.axis = {mission_.satellite.ra.value(), mission_.satellite.dec.value()},
                                      .roll = mission_.satellite.roll,
@@ -223,6 +227,14 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+  if (renderer_.renderer == Renderer::kSubPixel) {
+    // What a bright star may leave on a faint target, as with stamps.
+    constexpr double kNeighbours = 4.0;
+    constexpr double kRounding = 1e-13;
+    const double brightest = kNeighbours * std::max(s.brightest_electrons, 1.0);
+    sub_pixel_renderer_ = make_sub_pixel_renderer(
+        mission_, kPsfShare * s.accuracy, std::max(kRounding, kPsfShare * s.tightest_tolerance() / brightest));
+  }
 }
 
 Seconds Scene::mid_time(std::int64_t exposure) const {

@@ -226,6 +226,16 @@ void SubPixelRenderer::Design::convolve(const Rectangle& tile, std::span<const S
   cell_transform.backward(maps.cell_spectrum, maps.cells);
 }
 
+NegativeLight silence(std::span<double> light, double limit) {
+  NegativeLight negative;
+  for (double& pixel : light) {
+    if (!(pixel < 0.0)) continue;
+    negative.add({1, pixel});
+    if (pixel >= -limit) pixel = 0.0;
+  }
+  return negative;
+}
+
 SubPixelRenderer::SubPixelRenderer(std::shared_ptr<const PsfSpectrum> psf, Rectangle detector,
                                    const SubPixelSettings& settings)
     : design_(std::make_unique<const Design>(std::move(psf), detector, settings)) {}
@@ -238,14 +248,7 @@ NegativeLight SubPixelRenderer::render(const Rectangle& tile, std::span<const St
   render_cells(tile, stars, workspace, light);
   double brightest = 0.0;
   for (const StarLight& star : stars) brightest = std::max(brightest, star.electrons);
-  const double ringing = -design_->error * brightest;
-  NegativeLight negative;
-  for (double& pixel : light) {
-    if (!(pixel < 0.0)) continue;
-    negative.add({1, pixel});
-    if (pixel >= ringing) pixel = 0.0;
-  }
-  return negative;
+  return silence(light, design_->error * brightest);
 }
 
 void SubPixelRenderer::render_cells(const Rectangle& tile, std::span<const StarLight> stars, Workspace& workspace,
@@ -269,6 +272,9 @@ std::span<const Rectangle> SubPixelRenderer::tiles() const {
 }
 double SubPixelRenderer::reach() const {
   return design_->reach;
+}
+int SubPixelRenderer::cells() const {
+  return design_->cells;
 }
 int SubPixelRenderer::sub_pixels() const {
   return design_->sub_pixels;

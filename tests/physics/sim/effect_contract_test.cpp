@@ -60,6 +60,11 @@ std::vector<test::EffectScene> scenes() {
           },
           [](Mission& m) { m.satellite.jitter.model = JitterModel::kNone; }),
       scene("stars", {}, {}),
+      scene(
+          "sub-pixel-stars", [](Mission& m) { m.simulation.renderer = Renderer::kSubPixel; }, {}),
+      scene(
+          "intra-pixel-response", [](Mission& m) { m.psf.intra_pixel.depth = 0.05; },
+          [](Mission& m) { m.psf.intra_pixel.depth = 0.0; }),
       scene("sky", {}, [](Mission& m) { m.field.sky_background = ElectronsPerSecond(0.0); }),
       scene(
           "prnu", [](Mission& m) { m.ccd.prnu = 0.02; }, [](Mission& m) { m.ccd.prnu = 0.0; }),

@@ -35,6 +35,10 @@ struct NegativeLight {
   }
 };
 
+/// Sets light between -limit and 0 to 0. What is farther below comes from a PSF that is negative itself, and stays.
+/// @returns all that was below 0.
+NegativeLight silence(std::span<double> light, double limit);
+
 /// Renders tiles of a detector: stars are spread over a map of n sub-pixels per pixel, the map is transformed (FFTW,
 /// double precision), multiplied by the PSF, by the pixel's own response and by the correction of the spread, and
 /// summed up to pixels.
@@ -81,16 +85,16 @@ class SubPixelRenderer {
   ///
   /// Stars are added in the order given. Their stamps' half widths mean nothing here; their motion counts as in
   /// PixelPsf::integrate_broadened().
-  /// @param light  [out] shape (tile.ny, tile.nx), e-. Not negative, unless the PSF itself is: what lies between 0 and
-  ///               -predicted_error() of the brightest star is set to 0 and counted.
+  /// @param light  [out] shape (tile.ny, tile.nx), e-; silence()d to predicted_error() of the brightest star.
   /// @thread safe with a workspace per thread
   NegativeLight render(const Rectangle& tile, std::span<const StarLight> stars, Workspace& workspace,
                        std::span<double> light) const;
-  /// The same in cells: shape (tile.ny cells, tile.nx cells), e- per cell. Nothing is set to 0 or counted.
+  /// The same in cells: shape (tile.ny cells, tile.nx cells), e- per cell; not silenced.
   void render_cells(const Rectangle& tile, std::span<const StarLight> stars, Workspace& workspace,
                     std::span<double> light) const;
 
   [[nodiscard]] int sub_pixels() const;
+  [[nodiscard]] int cells() const;
   [[nodiscard]] double band() const;             ///< highest frequency used along each axis, cycles/px
   [[nodiscard]] double predicted_error() const;  ///< of the settings' accuracy
   [[nodiscard]] double workspace_bytes() const;

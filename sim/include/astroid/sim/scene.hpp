@@ -15,6 +15,7 @@
 #include "astroid/core/psf.hpp"
 #include "astroid/core/wcs.hpp"
 #include "astroid/sim/attitude.hpp"
+#include "astroid/sim/renderer.hpp"
 #include "astroid/sim/scene_summary.hpp"
 
 namespace astroid {
@@ -49,7 +50,13 @@ class Scene {
   /// Indices of the targets, in catalogue order.
   [[nodiscard]] std::span<const std::size_t> targets() const { return targets_; }
   [[nodiscard]] const std::shared_ptr<const PixelLayout>& layout() const { return layout_; }
+  /// What the detector records of a star: with the common response within the pixel, if there is one.
   [[nodiscard]] const PixelPsf& psf() const { return *psf_; }
+  /// What falls on the detector.
+  [[nodiscard]] const PixelPsf& optical_psf() const { return *optical_psf_; }
+  [[nodiscard]] const RendererChoice& renderer() const { return renderer_; }
+  /// Null unless it is chosen.
+  [[nodiscard]] const SubPixelRenderer* sub_pixel_renderer() const { return sub_pixel_renderer_.get(); }
   [[nodiscard]] const std::optional<SkyProjection>& projection() const { return projection_; }
   [[nodiscard]] const SceneSummary& summary() const { return summary_; }
   [[nodiscard]] const AttitudeModel& attitude() const { return *attitude_; }
@@ -63,7 +70,10 @@ class Scene {
   std::vector<SceneStar> stars_;
   std::vector<std::size_t> targets_;
   std::shared_ptr<const PixelLayout> layout_;
+  RendererChoice renderer_;
+  std::shared_ptr<const PixelPsf> optical_psf_;
   std::shared_ptr<const PixelPsf> psf_;
+  std::shared_ptr<const SubPixelRenderer> sub_pixel_renderer_;
   std::shared_ptr<const AttitudeModel> attitude_;
   SceneSummary summary_;
   std::vector<std::string> notes_;
