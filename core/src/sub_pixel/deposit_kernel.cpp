@@ -41,13 +41,14 @@ DepositKernel::Nodes DepositKernel::nodes(double x) const {
   const double half = 0.5 * static_cast<double>(width_);
   const double first = std::ceil(x - half);
   Nodes nodes{.first = static_cast<long>(first)};
+  std::array<double, kWidest> u{};
   for (std::size_t i = 0; i < width_; ++i) {
     const double t = (first + static_cast<double>(i) - x) / half;
-    const double u = std::max(0.0, 1.0 - t * t);
-    double value = 0.0;
-    for (auto c = series_.rbegin(); c != series_.rend(); ++c) value = value * u + *c;
-    nodes.weights[i] = value;
+    u[i] = std::max(0.0, 1.0 - t * t);
   }
+  // Horner's rule for all nodes side by side: none waits for another.
+  for (auto c = series_.rbegin(); c != series_.rend(); ++c)
+    for (std::size_t i = 0; i < kWidest; ++i) nodes.weights[i] = nodes.weights[i] * u[i] + *c;
   return nodes;
 }
 

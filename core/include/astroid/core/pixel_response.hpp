@@ -26,7 +26,7 @@ struct PixelResponse {
   friend bool operator==(const PixelResponse&, const PixelResponse&) = default;
 };
 
-/// Means over the cells, divided by the mean over the pixel, of a response that falls from 1 to 1 - depth:
+/// (F73) Means over the cells, divided by the mean over the pixel, of a response that falls from 1 to 1 - depth:
 /// @param cells  per axis, at least 1.  @param depth  0 … 1: what is missing at the edge.
 ///
 /// edge: 1 - depth within `width` px of the pixel's border, 1 inside, as a border of insensitive electrodes or channel
