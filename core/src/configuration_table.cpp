@@ -35,9 +35,9 @@ constexpr std::array kSections = {
 
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
-  for (auto part :
-       {simulation_parameters, renderer_parameters, satellite_parameters, telescope_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters,
-        ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+  for (auto part : {simulation_parameters, renderer_parameters, satellite_parameters, telescope_parameters,
+                    psf_parameters, intra_pixel_parameters, stellar_field_parameters, ccd_parameters,
+                    photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

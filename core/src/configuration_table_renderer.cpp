@@ -11,8 +11,9 @@ std::vector<Parameter> renderer_parameters() {
        .kind = Kind::kChoice,
        .fallback = "auto",
        .choices = {"auto", "analytic", "prf", "subpixel"},
-       .meaning = "How stars are made: integrated exactly (Gaussians), from a library of pixel-integrated PSFs, on a map "
-                  "of sub-pixels by Fourier transform, or what fits best.",
+       .meaning =
+           "How stars are made: integrated exactly (Gaussians), from a library of pixel-integrated PSFs, on a map "
+           "of sub-pixels by Fourier transform, or what fits best.",
        .example = "auto",
        .assign =
            [](Mission& m, const Value& v) {
@@ -36,7 +37,8 @@ std::vector<Parameter> intra_pixel_parameters() {
        .kind = Kind::kChoice,
        .fallback = "edge",
        .choices = {"edge", "cosine", "gaussian"},
-       .meaning = "How sensitivity falls from the centre of a pixel to its edge: in a step along the edge, or smoothly.",
+       .meaning =
+           "How sensitivity falls from the centre of a pixel to its edge: in a step along the edge, or smoothly.",
        .example = "edge",
        .assign =
            [](Mission& m, const Value& v) {

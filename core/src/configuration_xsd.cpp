@@ -57,8 +57,8 @@ std::string bounds(const Parameter& parameter) {
   }
   if (std::isfinite(range.maximum)) {
     const bool whole = parameter.kind == Kind::kInteger;
-    facets += facet("maxInclusive", whole ? fmt::format("{:.0f}", std::floor(range.maximum))
-                                          : fmt::format("{}", range.maximum));
+    facets += facet("maxInclusive",
+                    whole ? fmt::format("{:.0f}", std::floor(range.maximum)) : fmt::format("{}", range.maximum));
   }
   return facets;
 }

@@ -23,7 +23,8 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   std::string out = "What will be computed, and why\n\n";
   out += fmt::format("Pixels     {}\n", plan.pixels);
   out += fmt::format("Stars      {} on or next to the detector, {} of them targets\n", s.stars, scene.targets().size());
-  out += fmt::format("PSF        {} (renderer {}: {})\n", scene.psf().description(), plan.renderer, plan.renderer_reason);
+  out +=
+      fmt::format("PSF        {} (renderer {}: {})\n", scene.psf().description(), plan.renderer, plan.renderer_reason);
   if (const SubPixelRenderer* map = scene.sub_pixel_renderer())
     out += fmt::format("Map        {}; {:.3g} MiB per worker\n", map->description(), map->workspace_bytes() / kMebi);
   out += fmt::format("Attitude   {}\n", scene.attitude().description());

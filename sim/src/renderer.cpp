@@ -101,9 +101,9 @@ std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& m
   const SubPixelSettings settings{.accuracy = gaussian ? std::min(accuracy, tight) : accuracy,
                                   .sub_pixels = mission.simulation.sub_pixels,
                                   .cells = has_intra_pixel_response(mission) ? mission.psf.intra_pixel.cells : 1};
-  return std::make_shared<const SubPixelRenderer>(
-      gaussian ? make_gaussian_spectrum(mission.psf.sigma.value()) : make_table_spectrum(read_psf_table(mission.psf.file)),
-      Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
+  return std::make_shared<const SubPixelRenderer>(gaussian ? make_gaussian_spectrum(mission.psf.sigma.value())
+                                                           : make_table_spectrum(read_psf_table(mission.psf.file)),
+                                                  Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
 }
 
 }  // namespace astroid

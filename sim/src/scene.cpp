@@ -232,8 +232,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     constexpr double kNeighbours = 4.0;
     constexpr double kRounding = 1e-13;
     const double brightest = kNeighbours * std::max(s.brightest_electrons, 1.0);
-    sub_pixel_renderer_ = make_sub_pixel_renderer(
-        mission_, kPsfShare * s.accuracy, std::max(kRounding, kPsfShare * s.tightest_tolerance() / brightest));
+    sub_pixel_renderer_ = make_sub_pixel_renderer(mission_, kPsfShare * s.accuracy,
+                                                  std::max(kRounding, kPsfShare * s.tightest_tolerance() / brightest));
   }
 }
 

@@ -17,8 +17,8 @@ std::vector<StarLight> stars_on(int side, std::int64_t count) {
   std::vector<StarLight> stars;
   for (std::int64_t i = 0; i < count; ++i) {
     const auto k = static_cast<double>(i + 1);
-    stars.push_back({.centre = {side * std::fmod(k * kGolden, 1.0), side * std::fmod(k * kPlastic, 1.0)},
-                     .electrons = 1e4});
+    stars.push_back(
+        {.centre = {side * std::fmod(k * kGolden, 1.0), side * std::fmod(k * kPlastic, 1.0)}, .electrons = 1e4});
   }
   return stars;
 }

@@ -57,9 +57,8 @@ long double refine(const std::function<long double(long double)>& f, long double
 
 // The 7-point Kronrod rule about the 3-point Gauss rule: enough for the pieces of a spline.
 Integral small_rule(const std::function<long double(long double)>& f, long double from, long double to) {
-  constexpr std::array<long double, 3> kSmallNodes = {0.960491268708020283423507092629080L,
-                                                      0.774596669241483377035853079956480L,
-                                                      0.434243749346802558002071502844628L};
+  constexpr std::array<long double, 3> kSmallNodes = {
+      0.960491268708020283423507092629080L, 0.774596669241483377035853079956480L, 0.434243749346802558002071502844628L};
   constexpr std::array<long double, 4> kSmallKronrod = {
       0.104656226026467265193823857192073L, 0.268488089868333440728569280666710L, 0.401397414775962222905051818618432L,
       0.450916538658474142345110087045571L};

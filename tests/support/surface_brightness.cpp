@@ -35,8 +35,8 @@ struct Slope {
 };
 
 Slope slope_at(long double u, std::size_t intervals) {
-  const auto knot = static_cast<std::size_t>(
-      std::clamp(std::floor(u), 0.0L, static_cast<long double>(intervals) - 1.0L));
+  const auto knot =
+      static_cast<std::size_t>(std::clamp(std::floor(u), 0.0L, static_cast<long double>(intervals) - 1.0L));
   const long double t = u - static_cast<long double>(knot);
   const long double s = 1.0L - t;
   return {knot, {-1.0L, 1.0L}, {(1.0L - 3.0L * s * s) / 6.0L, (3.0L * t * t - 1.0L) / 6.0L}};
@@ -119,9 +119,10 @@ SurfaceBrightness table_brightness(const PsfTable& table) {
       for (std::size_t i = 0; i < 2; ++i) {
         const std::size_t row = y.knot + j;
         const std::size_t column = x.knot + i;
-        sum += y.values[j] * (x.values[i] * corners.value[row][column] + x.curvatures[i] * corners.along_x[row][column]) +
-               y.curvatures[j] *
-                   (x.values[i] * corners.along_y[row][column] + x.curvatures[i] * corners.along_both[row][column]);
+        sum +=
+            y.values[j] * (x.values[i] * corners.value[row][column] + x.curvatures[i] * corners.along_x[row][column]) +
+            y.curvatures[j] *
+                (x.values[i] * corners.along_y[row][column] + x.curvatures[i] * corners.along_both[row][column]);
       }
     return sum * scale * scale;
   };

@@ -9,8 +9,8 @@ namespace astroid::detail {
 
 /// The Kaiser-Bessel kernel of a non-uniform Fourier transform, and its own transform, by which it is divided out.
 ///
-/// A star at x nodes leaves phi(m - x) on node m; the spectrum of the nodes, divided by transform(f), is that of a point
-/// at x: e^(-2 pi i f x) for every |f| up to `band`.
+/// A star at x nodes leaves phi(m - x) on node m; the spectrum of the nodes, divided by transform(f), is that of a
+/// point at x: e^(-2 pi i f x) for every |f| up to `band`.
 /// @accuracy  of the star: 1e-14 in the inner half of the band, 1e-12 at its edge, where a PSF leaves little
 ///            (test: DepositKernel.MakesAStarAPurePhaseRamp), for any x: nothing is snapped.
 /// @source Beatty2005 Eq. 5 for the shape; Barnett2019 for the error, e^(-pi width sqrt(1 - 2 band)).

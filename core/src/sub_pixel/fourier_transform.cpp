@@ -27,8 +27,8 @@ FourierTransform::FourierTransform(std::size_t nx, std::size_t ny) : nx_(nx), ny
   const auto columns = static_cast<int>(nx);
   const auto rows = static_cast<int>(ny);
   const std::lock_guard lock(planner());
-  forward_ = fftw_plan_dft_r2c_2d(rows, columns, real.data(), as_fftw(spectrum.data()),
-                                  FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
+  forward_ =
+      fftw_plan_dft_r2c_2d(rows, columns, real.data(), as_fftw(spectrum.data()), FFTW_ESTIMATE | FFTW_PRESERVE_INPUT);
   backward_ = fftw_plan_dft_c2r_2d(rows, columns, as_fftw(spectrum.data()), real.data(), FFTW_ESTIMATE);
   if (forward_ == nullptr || backward_ == nullptr) throw BugError("FFTW has no plan for a transform of this size");
 }

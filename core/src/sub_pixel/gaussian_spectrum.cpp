@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "astroid/core/math.hpp"
-#include "astroid/core/units.hpp"
 #include "astroid/core/psf_spectrum.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
@@ -43,9 +43,7 @@ class GaussianSpectrum final : public PsfSpectrum {
     return 2.0 * axis + axis * axis;
   }
 
-  [[nodiscard]] std::string description() const override {
-    return fmt::format("Gaussian of sigma {} px", sigma_);
-  }
+  [[nodiscard]] std::string description() const override { return fmt::format("Gaussian of sigma {} px", sigma_); }
 
  private:
   [[nodiscard]] double profile(double k) const { return det::exp(-kTwoPiSquared * sigma_ * sigma_ * k * k); }

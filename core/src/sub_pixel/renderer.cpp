@@ -168,7 +168,9 @@ void SubPixelRenderer::Design::deposit(PixelPosition star, double electrons, std
 
 void SubPixelRenderer::Design::deposit(const Rectangle& tile, std::span<const StarLight> stars,
                                        std::span<double> map) const {
-  const auto inside = [this](double x, int first, int end) { return x >= first - 0.5 - reach && x < end - 0.5 + reach; };
+  const auto inside = [this](double x, int first, int end) {
+    return x >= first - 0.5 - reach && x < end - 0.5 + reach;
+  };
   // Node 0 is the centre of the first pixel of the margin.
   const auto add = [&](PixelPosition star, double electrons) {
     if (!inside(star.x, tile.x0, tile.x1()) || !inside(star.y, tile.y0, tile.y1())) return;
@@ -264,7 +266,8 @@ void SubPixelRenderer::render_cells(const Rectangle& tile, std::span<const StarL
   const std::size_t rows = static_cast<std::size_t>(tile.ny) * cells;
   const double* map = workspace.maps_->cells.data();
   for (std::size_t row = 0; row < rows; ++row)
-    std::copy_n(map + (row + margin) * d.cell_transform.nx() + margin, width, light.begin() + static_cast<std::ptrdiff_t>(row * width));
+    std::copy_n(map + (row + margin) * d.cell_transform.nx() + margin, width,
+                light.begin() + static_cast<std::ptrdiff_t>(row * width));
 }
 
 std::span<const Rectangle> SubPixelRenderer::tiles() const {
@@ -294,10 +297,11 @@ std::size_t SubPixelRenderer::map_size() const {
 
 std::string SubPixelRenderer::description() const {
   const Design& d = *design_;
-  return fmt::format("{} on a map of {} x {} sub-pixels per pixel, convolved up to {:.3g} cycles/px in {} tiles of {} x {} px; "
-                     "flux in any square within {:.2g} of the star's",
-                     d.psf->description(), d.sub_pixels, d.sub_pixels, d.band, d.grid.tiles.size(), d.grid.tile_x,
-                     d.grid.tile_y, d.error);
+  return fmt::format(
+      "{} on a map of {} x {} sub-pixels per pixel, convolved up to {:.3g} cycles/px in {} tiles of {} x {} px; "
+      "flux in any square within {:.2g} of the star's",
+      d.psf->description(), d.sub_pixels, d.sub_pixels, d.band, d.grid.tiles.size(), d.grid.tile_x, d.grid.tile_y,
+      d.error);
 }
 
 }  // namespace astroid

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "astroid/core/math.hpp"
-#include "astroid/core/units.hpp"
 #include "astroid/core/psf_spectrum.hpp"
+#include "astroid/core/units.hpp"
 #include "flux_spline.hpp"
 
 namespace astroid {
@@ -68,16 +68,15 @@ void basis_transforms(double f, std::vector<Complex>& basis) {
 
 class TableSpectrum final : public PsfSpectrum {
  public:
-  explicit TableSpectrum(const PsfTable& table)
-      : spline_(table), nx_(spline_.nx() + 2), ny_(spline_.ny() + 2) {
+  explicit TableSpectrum(const PsfTable& table) : spline_(table), nx_(spline_.nx() + 2), ny_(spline_.ny() + 2) {
     // Mixed differences of the coefficients of the running integral.
     const auto c = spline_.coefficients();
     const std::size_t stride = nx_ + 1;
     differences_.resize(nx_ * ny_);
     for (std::size_t j = 0; j < ny_; ++j)
       for (std::size_t i = 0; i < nx_; ++i)
-        differences_[j * nx_ + i] = (c[(j + 1) * stride + i + 1] - c[(j + 1) * stride + i]) -
-                                    (c[j * stride + i + 1] - c[j * stride + i]);
+        differences_[j * nx_ + i] =
+            (c[(j + 1) * stride + i + 1] - c[(j + 1) * stride + i]) - (c[j * stride + i + 1] - c[j * stride + i]);
   }
 
   void sample(std::span<const double> kx, std::span<const double> ky, std::span<Complex> values) const override {
@@ -153,13 +152,10 @@ double TableSpectrum::error_beyond(double band) const {
   std::vector<double> kx(most + 1);
   std::vector<double> ky(2 * most + 1);
   for (std::size_t i = 0; i <= most; ++i) kx[i] = static_cast<double>(i) / period;
-  for (std::size_t i = 0; i <= 2 * most; ++i)
-    ky[i] = (static_cast<double>(i) - static_cast<double>(most)) / period;
+  for (std::size_t i = 0; i <= 2 * most; ++i) ky[i] = (static_cast<double>(i) - static_cast<double>(most)) / period;
   std::vector<Complex> h(kx.size() * ky.size());
   sample(kx, ky, h);
-  const auto square = [](double k, double width) {
-    return k == 0.0 ? width : det::sin(kPi * k * width) / (kPi * k);
-  };
+  const auto square = [](double k, double width) { return k == 0.0 ? width : det::sin(kPi * k * width) / (kPi * k); };
   // Squares about the star, and at the borders of the table, where its light may end in a step.
   const std::array<double, 3> columns = {0.0, lower.x, upper.x};
   const std::array<double, 3> lines = {0.0, lower.y, upper.y};
@@ -192,8 +188,7 @@ double TableSpectrum::error_beyond(double band) const {
         double flux = 0.0;
         for (std::size_t q = 0; q < ky.size(); ++q) flux += (rows[q] * ramp[q]).real() * square_y[q];
         flux /= period * period;
-        const double exact =
-            spline_.flux({x - 0.5 * width, y - 0.5 * width}, {x + 0.5 * width, y + 0.5 * width});
+        const double exact = spline_.flux({x - 0.5 * width, y - 0.5 * width}, {x + 0.5 * width, y + 0.5 * width});
         worst = std::max(worst, std::abs(flux - exact));
       }
     }

@@ -59,11 +59,12 @@ TileGrid make_tile_grid(const Rectangle& detector, const TileNeeds& needs) {
   const Axis wide = choose_axis(std::max(detector.nx, detector.ny), needs.margin, other);
   if (narrow.period == 0 || wide.period == 0) {
     const double period = kSmallestTile + 2.0 * needs.margin;
-    throw InputError(Problem{.parameter = "Simulation/Renderer",
-                             .value = "subpixel",
-                             .expected = "fewer sub-pixels or a PSF of smaller extent",
-                             .message = fmt::format("the smallest tile needs {:.3g} MB, {:.3g} MB are allowed",
-                                                    1e-6 * bytes_of(period, period, needs), 1e-6 * needs.memory_bytes)});
+    throw InputError(
+        Problem{.parameter = "Simulation/Renderer",
+                .value = "subpixel",
+                .expected = "fewer sub-pixels or a PSF of smaller extent",
+                .message = fmt::format("the smallest tile needs {:.3g} MB, {:.3g} MB are allowed",
+                                       1e-6 * bytes_of(period, period, needs), 1e-6 * needs.memory_bytes)});
   }
   const bool x_is_narrow = detector.nx <= detector.ny;
   const Axis x = x_is_narrow ? narrow : wide;

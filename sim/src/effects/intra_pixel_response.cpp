@@ -19,13 +19,15 @@ EffectNeed IntraPixelResponse::is_needed(const SceneSummary& scene) const {
   const double moved = largest * scene.psf.gradient * scene.attitude_rms_px;
   const double variance = flux > 0.0 ? moved * moved / scene.relative_variance_in_bin(flux) : 0.0;
   const std::string what =
-      s.flat > 0.0 ? fmt::format("cells of 1/{} px differ by up to {:.3g} % from the pixel's mean and by {:.3g} % rms from "
-                                 "pixel to pixel",
-                                 s.cells, 100.0 * depth, 100.0 * s.flat)
+      s.flat > 0.0 ? fmt::format(
+                         "cells of 1/{} px differ by up to {:.3g} % from the pixel's mean and by {:.3g} % rms from "
+                         "pixel to pixel",
+                         s.cells, 100.0 * depth, 100.0 * s.flat)
                    : fmt::format("cells of 1/{} px differ by up to {:.3g} % from the pixel's mean, alike in all pixels",
                                  s.cells, 100.0 * depth);
   return {has_intra_pixel_response(*scene.mission),
-          fmt::format("{}; the accuracy asked for is {:.3g} ppm", what, 1e6 * scene.accuracy), largest * flux, variance};
+          fmt::format("{}; the accuracy asked for is {:.3g} ppm", what, 1e6 * scene.accuracy), largest * flux,
+          variance};
 }
 
 void IntraPixelResponse::prepare(CameraState& camera, const PrepareContext& context) const {

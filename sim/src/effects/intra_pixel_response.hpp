@@ -13,7 +13,7 @@ namespace astroid {
 /// where the light is made: this effect draws what is fixed and hands it over, and touches no pixel itself.
 class IntraPixelResponse final : public Effect {
  public:
-  static constexpr EffectSpec kSpec{"intra-pixel-response", StreamId{111},        EffectLevel::kSubPixel, 0, 0, 0,
+  static constexpr EffectSpec kSpec{"intra-pixel-response", StreamId{111},     EffectLevel::kSubPixel, 0, 0, 0,
                                     RandomScope::kStatic,   "MarcosArenal2014"};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;

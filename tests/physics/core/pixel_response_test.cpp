@@ -1,4 +1,5 @@
-// Sensitivity that varies within the pixel: the PSF that absorbs it, and the sub-pixel map, against adaptive quadrature.
+// Sensitivity that varies within the pixel: the PSF that absorbs it, and the sub-pixel map, against adaptive
+// quadrature.
 #include "astroid/core/pixel_response.hpp"
 
 #include <gtest/gtest.h>
@@ -25,7 +26,8 @@ std::vector<double> prf(const PixelPsf& psf, PixelPosition star) {
   return p;
 }
 
-/// The same pixels by the sub-pixel map: light of the cells times their sensitivity, or with the response in Fourier space.
+/// The same pixels by the sub-pixel map: light of the cells times their sensitivity, or with the response in Fourier
+/// space.
 std::vector<double> by_cells(const SubPixelRenderer& renderer, const PixelResponse& response, PixelPosition star) {
   const StarLight light{.centre = star, .electrons = 1.0};
   SubPixelRenderer::Workspace workspace;
@@ -63,7 +65,8 @@ TEST(PixelResponse, IsFoldedIntoThePsfExactly) {
         const auto fourier = in_fourier_space(folded, star);
         for (const auto& [x, y] : {std::pair{0, 0}, std::pair{1, 0}}) {
           const auto i = static_cast<std::size_t>((y - kBox.y0) * kBox.nx + x - kBox.x0);
-          const auto exact = static_cast<double>(test::integrate_response(brightness, response, star, x, y, 1e-12L).value);
+          const auto exact =
+              static_cast<double>(test::integrate_response(brightness, response, star, x, y, 1e-12L).value);
           EXPECT_NEAR(p[i], exact, 1e-8) << sigma << " " << star.x;
           EXPECT_NEAR(cells[i], exact, 1e-11) << sigma << " " << star.x;
           EXPECT_NEAR(fourier[i], exact, 1e-11) << sigma << " " << star.x;
@@ -103,7 +106,8 @@ TEST(PixelResponse, OfNoDepthIsTheSamePsfBitForBit) {
   const PsfTable table = test::gaussian_psf_table(0.6, 8.0, 4.0);
   const auto plain = make_prf_psf(table, 1e-6);
   for (const PixelResponse& response : {edge_response(1, 0.0, 0.1), PixelResponse{}})
-    for (const PixelPosition star : kStars) EXPECT_EQ(prf(*plain, star), prf(*make_prf_psf(table, 1e-6, 0, response), star));
+    for (const PixelPosition star : kStars)
+      EXPECT_EQ(prf(*plain, star), prf(*make_prf_psf(table, 1e-6, 0, response), star));
 }
 
 TEST(PixelResponse, ChangesFluxWithThePlaceAsFirstOrderSays) {

@@ -60,8 +60,7 @@ std::vector<test::EffectScene> scenes() {
           },
           [](Mission& m) { m.satellite.jitter.model = JitterModel::kNone; }),
       scene("stars", {}, {}),
-      scene(
-          "sub-pixel-stars", [](Mission& m) { m.simulation.renderer = Renderer::kSubPixel; }, {}),
+      scene("sub-pixel-stars", [](Mission& m) { m.simulation.renderer = Renderer::kSubPixel; }, {}),
       scene(
           "intra-pixel-response", [](Mission& m) { m.psf.intra_pixel.depth = 0.05; },
           [](Mission& m) { m.psf.intra_pixel.depth = 0.0; }),

@@ -22,8 +22,8 @@ TEST(Oracle, IntegratesAGaussianAndStatesItsError) {
     for (const int n : {1, 3}) {
       const auto area = test::square_of_pixels(-1, 0, n);
       const auto integral = test::integrate_area(brightness, star, area, 1e-14L);
-      const long double exact = exact_axis(sigma, area.x0 - 0.31L, area.x1 - 0.31L) *
-                                exact_axis(sigma, area.y0 + 0.12L, area.y1 + 0.12L);
+      const long double exact =
+          exact_axis(sigma, area.x0 - 0.31L, area.x1 - 0.31L) * exact_axis(sigma, area.y0 + 0.12L, area.y1 + 0.12L);
       EXPECT_LE(std::abs(integral.value - exact), integral.error + 1e-17L) << static_cast<double>(sigma);
       EXPECT_LT(static_cast<double>(integral.error), 1.2e-14);
     }
@@ -37,10 +37,9 @@ TEST(Oracle, OfATableKeepsTheFluxOfEverySample) {
   for (const double sample : table.samples.pixels()) total += static_cast<long double>(sample);
   const auto brightness = test::table_brightness(table);
   for (const auto& [i, j] : {std::pair{3, 5}, std::pair{0, 0}, std::pair{12, 11}, std::pair{23, 4}}) {
-    const test::Area sample{brightness.x_breaks[static_cast<std::size_t>(i)],
-                            brightness.x_breaks[static_cast<std::size_t>(i) + 1],
-                            brightness.y_breaks[static_cast<std::size_t>(j)],
-                            brightness.y_breaks[static_cast<std::size_t>(j) + 1]};
+    const test::Area sample{
+        brightness.x_breaks[static_cast<std::size_t>(i)], brightness.x_breaks[static_cast<std::size_t>(i) + 1],
+        brightness.y_breaks[static_cast<std::size_t>(j)], brightness.y_breaks[static_cast<std::size_t>(j) + 1]};
     const auto flux = test::integrate_area(brightness, {0.0, 0.0}, sample, 1e-14L);
     EXPECT_NEAR(static_cast<double>(flux.value - static_cast<long double>(table.samples.at(i, j)) / total), 0.0, 1e-15);
   }
@@ -57,7 +56,8 @@ TEST(Oracle, OfATableIsWhatThePhaseLibraryHasAtItsPhases) {
     for (int y = box.y0; y < box.y1(); ++y)
       for (int x = box.x0; x < box.x1(); ++x) {
         const auto exact = test::integrate_area(brightness, star, test::square_of_pixels(x, y, 1), 1e-14L);
-        EXPECT_NEAR(p[static_cast<std::size_t>((y - box.y0) * box.nx + x - box.x0)], static_cast<double>(exact.value), 2e-15);
+        EXPECT_NEAR(p[static_cast<std::size_t>((y - box.y0) * box.nx + x - box.x0)], static_cast<double>(exact.value),
+                    2e-15);
       }
   }
 }

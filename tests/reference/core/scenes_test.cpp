@@ -1,8 +1,8 @@
 // Two hundred random scenes, every renderer, one oracle: adaptive quadrature of the PSF over the pixels.
 //
-// A target with neighbours down to a hundredth of its flux and up to ten times as bright, at random positions, in squares
-// of 1 to 5 pixels around it. The error is that of the light in the square, neighbours included, and has to stay below
-// the accuracy asked for, relative to that light: 1 ppm, and 0.01 ppm.
+// A target with neighbours down to a hundredth of its flux and up to ten times as bright, at random positions, in
+// squares of 1 to 5 pixels around it. The error is that of the light in the square, neighbours included, and has to
+// stay below the accuracy asked for, relative to that light: 1 ppm, and 0.01 ppm.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "astroid/core/psf.hpp"
 #include "astroid/core/distributions.hpp"
+#include "astroid/core/psf.hpp"
 #include "astroid/core/sub_pixel.hpp"
 #include "astroid/test/psf_table.hpp"
 #include "astroid/test/quadrature.hpp"
@@ -69,8 +69,12 @@ PsfTable made_up_table(double sigma, double samples_per_pixel) {
 }
 
 Optics gaussian(double sigma) {
-  return {"Gaussian", test::smooth_brightness(test::gaussian_density(sigma)), make_gaussian_psf(sigma),
-          make_gaussian_spectrum(sigma), 9.0 * sigma, {1, 3, 5}};
+  return {"Gaussian",
+          test::smooth_brightness(test::gaussian_density(sigma)),
+          make_gaussian_psf(sigma),
+          make_gaussian_spectrum(sigma),
+          9.0 * sigma,
+          {1, 3, 5}};
 }
 
 Optics tabulated(const PsfTable& table, double accuracy) {
@@ -126,7 +130,8 @@ Errors errors_of(const Optics& optics, const SubPixelRenderer& renderer, const s
     const int y0 = static_cast<int>(std::lround(stars[0].centre.y)) - n / 2;
     test::Integral exact;
     for (const StarLight& star : stars) {
-      test::Integral one = test::integrate_area(optics.brightness, star.centre, test::square_of_pixels(x0, y0, n), 1e-13L);
+      test::Integral one =
+          test::integrate_area(optics.brightness, star.centre, test::square_of_pixels(x0, y0, n), 1e-13L);
       one.value *= static_cast<long double>(star.electrons);
       one.error *= static_cast<long double>(star.electrons);
       exact += one;

@@ -23,9 +23,7 @@ struct Picture {
   [[nodiscard]] double at(int x, int y) const {
     return light[static_cast<std::size_t>((y - area.y0) * area.nx + x - area.x0)];
   }
-  [[nodiscard]] double total() const {
-    return static_cast<double>(std::accumulate(light.begin(), light.end(), 0.0L));
-  }
+  [[nodiscard]] double total() const { return static_cast<double>(std::accumulate(light.begin(), light.end(), 0.0L)); }
 };
 
 Picture render(const SubPixelRenderer& renderer, Rectangle area, const std::vector<StarLight>& stars) {
@@ -59,7 +57,8 @@ TEST(SubPixelRenderer, KeepsTheCentroidToOnePicopixel) {
   for (const double sigma : {0.4, 1.0}) {
     const Rectangle area{0, 0, 41, 43};
     const SubPixelRenderer renderer(make_gaussian_spectrum(sigma), area, {.accuracy = 1e-14});
-    for (const PixelPosition star : {PixelPosition{20.0, 21.0}, PixelPosition{20.3, 20.9}, PixelPosition{19.5, 21.123}}) {
+    for (const PixelPosition star :
+         {PixelPosition{20.0, 21.0}, PixelPosition{20.3, 20.9}, PixelPosition{19.5, 21.123}}) {
       const Picture picture = render(renderer, area, {{.centre = star, .electrons = 1.0}});
       long double x_sum = 0.0L;
       long double y_sum = 0.0L;

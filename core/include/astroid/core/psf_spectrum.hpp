@@ -38,7 +38,8 @@ class PsfSpectrum {
 
 /// Circular Gaussian: H = e^(-2 pi² sigma² k²).
 ///
-/// error_beyond() is a bound: (2/pi) E1(2 pi² sigma² band²), to first order (F72). @throws InputError unless sigma is positive and finite.
+/// error_beyond() is a bound: (2/pi) E1(2 pi² sigma² band²), to first order (F72). @throws InputError unless sigma is
+/// positive and finite.
 std::shared_ptr<const PsfSpectrum> make_gaussian_spectrum(double sigma);
 
 /// A PSF table with its flux per sample kept, exactly what make_prf_psf() interpolates: the Fourier transform of the

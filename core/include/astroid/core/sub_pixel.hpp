@@ -17,9 +17,9 @@
 namespace astroid {
 
 struct SubPixelSettings {
-  double accuracy = 1e-7;  ///< allowed to the flux of a star in any square of pixels, relative to the star's flux
-  int sub_pixels = 0;      ///< of the map, per pixel and axis; 0: from the accuracy
-  int cells = 1;           ///< per pixel and axis in which the light is wanted: 1, or those of a response
+  double accuracy = 1e-7;    ///< allowed to the flux of a star in any square of pixels, relative to the star's flux
+  int sub_pixels = 0;        ///< of the map, per pixel and axis; 0: from the accuracy
+  int cells = 1;             ///< per pixel and axis in which the light is wanted: 1, or those of a response
   PixelResponse response{};  ///< the same in every pixel; folded into the PSF. Only where cells is 1
   double memory_bytes = 128.0 * 1024.0 * 1024.0;  ///< of the maps of one worker; smaller tiles where they do not fit
 };
@@ -49,7 +49,8 @@ NegativeLight silence(std::span<double> light, double limit);
 ///
 /// Tiles are laid out from the detector's first pixel and depend on nothing else, so that a window and the full frame
 /// have the same bits. @accuracy  predicted_error(); bits may differ between processors (FFTW).
-/// @source F70, F71; MarcosArenal2014 for the method, Beatty2005 and Barnett2019 for the spread.  @complexity (bench: BM_SubPixel)
+/// @source F70, F71; MarcosArenal2014 for the method, Beatty2005 and Barnett2019 for the spread.  @complexity (bench:
+/// BM_SubPixel)
 class SubPixelRenderer {
  public:
   /// @throws InputError when the PSF needs a finer map than 128 sub-pixels, or the smallest tile more than the memory.

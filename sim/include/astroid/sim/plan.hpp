@@ -57,7 +57,7 @@ struct AccuracyShares {
 struct Plan {
   std::vector<PlannedEffect> effects;  ///< every effect of the table, on or off
   PlanKnobs knobs;
-  std::string renderer;                       ///< analytic, prf or subpixel
+  std::string renderer;  ///< analytic, prf or subpixel
   std::string renderer_reason;
   double renderer_error = 0.0;                ///< of a star's flux, relative
   std::string pixels;                         ///< full frame, sub-field or windows, and what is exact

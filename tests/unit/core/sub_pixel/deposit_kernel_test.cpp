@@ -19,7 +19,8 @@ std::complex<long double> ramp(const detail::DepositKernel& kernel, double x, do
   std::complex<long double> sum;
   for (std::size_t i = 0; i < kernel.width(); ++i)
     sum += static_cast<long double>(nodes.weights[i]) *
-           std::polar(1.0L, -kTwoPi * static_cast<long double>(frequency) * (static_cast<long double>(nodes.first) + static_cast<long double>(i)));
+           std::polar(1.0L, -kTwoPi * static_cast<long double>(frequency) *
+                                (static_cast<long double>(nodes.first) + static_cast<long double>(i)));
   return sum / static_cast<long double>(kernel.transform(frequency));
 }
 

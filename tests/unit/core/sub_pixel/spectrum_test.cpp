@@ -72,14 +72,16 @@ TEST(PsfSpectrum, KnowsWhatABandLeavesOut) {
     for (const double band : {0.4, 0.6, 0.8}) {
       // Its frequencies come in steps of 1/19 px or more.
       constexpr double kStep = 1.0 / 19.0;
-      EXPECT_LT(measured->error_beyond(band / sigma), bound->error_beyond(band / sigma - kStep)) << sigma << " " << band;
+      EXPECT_LT(measured->error_beyond(band / sigma), bound->error_beyond(band / sigma - kStep))
+          << sigma << " " << band;
       EXPECT_GT(measured->error_beyond(band / sigma), 0.2 * bound->error_beyond(band / sigma)) << sigma << " " << band;
     }
   }
 }
 
 TEST(PsfSpectrum, RefusesAPointAndWhatIsNoWidth) {
-  for (const double sigma : {0.0, -1.0, std::nan(""), HUGE_VAL}) EXPECT_THROW(make_gaussian_spectrum(sigma), InputError);
+  for (const double sigma : {0.0, -1.0, std::nan(""), HUGE_VAL})
+    EXPECT_THROW(make_gaussian_spectrum(sigma), InputError);
 }
 
 }  // namespace

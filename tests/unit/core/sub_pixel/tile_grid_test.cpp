@@ -13,9 +13,11 @@ namespace {
 constexpr double kMegabyte = 1e6;
 
 TEST(TileGrid, CoversEveryPixelOnce) {
-  for (const Rectangle detector : {Rectangle{0, 0, 1, 1}, Rectangle{0, 0, 1, 300}, Rectangle{0, 0, 257, 64}, Rectangle{0, 0, 1000, 700}}) {
+  for (const Rectangle detector :
+       {Rectangle{0, 0, 1, 1}, Rectangle{0, 0, 1, 300}, Rectangle{0, 0, 257, 64}, Rectangle{0, 0, 1000, 700}}) {
     for (const double memory : {2.0, 20.0, 200.0}) {
-      const auto grid = detail::make_tile_grid(detector, {.sub_pixels = 4, .margin = 6, .memory_bytes = memory * kMegabyte});
+      const auto grid =
+          detail::make_tile_grid(detector, {.sub_pixels = 4, .margin = 6, .memory_bytes = memory * kMegabyte});
       std::vector<int> times(detector.size());
       for (const Rectangle& tile : grid.tiles)
         for (int y = tile.y0; y < tile.y1(); ++y)
@@ -27,7 +29,8 @@ TEST(TileGrid, CoversEveryPixelOnce) {
 
 TEST(TileGrid, FitsIntoTheMemory) {
   for (const double memory : {2.0, 20.0, 200.0}) {
-    const auto grid = detail::make_tile_grid({0, 0, 2000, 1500}, {.sub_pixels = 8, .margin = 4, .memory_bytes = memory * kMegabyte});
+    const auto grid =
+        detail::make_tile_grid({0, 0, 2000, 1500}, {.sub_pixels = 8, .margin = 4, .memory_bytes = memory * kMegabyte});
     EXPECT_LE(grid.workspace_bytes, memory * kMegabyte);
     EXPECT_GE(grid.period_x, grid.tile_x + 8);
     EXPECT_GE(grid.period_y, grid.tile_y + 8);
@@ -35,7 +38,8 @@ TEST(TileGrid, FitsIntoTheMemory) {
 }
 
 TEST(TileGrid, TakesOneTileWhereThatFits) {
-  EXPECT_EQ(detail::make_tile_grid({0, 0, 88, 88}, {.sub_pixels = 4, .margin = 6, .memory_bytes = 1e9}).tiles.size(), 1U);
+  EXPECT_EQ(detail::make_tile_grid({0, 0, 88, 88}, {.sub_pixels = 4, .margin = 6, .memory_bytes = 1e9}).tiles.size(),
+            1U);
 }
 
 TEST(TileGrid, SaysWhatTheSmallestTileNeeds) {

@@ -27,8 +27,8 @@ Density gaussian_density(long double sigma);
 /// An integral and how well it is known.
 struct Integral {
   long double value = 0.0L;
-  long double error = 0.0L;  ///< sum over the panels of the difference of the two rules: far above the true error, since
-                             ///< the better one is used
+  long double error = 0.0L;  ///< sum over the panels of the difference of the two rules: far above the true error,
+                             ///< since the better one is used
   Integral& operator+=(const Integral& other) {
     value += other.value;
     error += other.error;
@@ -36,8 +36,8 @@ struct Integral {
   }
 };
 
-/// First the 7-point Kronrod rule about 3 Gauss points; where that isn't enough, the larger rule, refined until each panel's difference is below its share of `absolute`, or below 1e-18 of its own
-/// integral of |f|, which is rounding.
+/// First the 7-point Kronrod rule about 3 Gauss points; where that isn't enough, the larger rule, refined until each
+/// panel's difference is below its share of `absolute`, or below 1e-18 of its own integral of |f|, which is rounding.
 Integral integrate_absolute(const std::function<long double(long double)>& f, long double from, long double to,
                             long double absolute);
 
@@ -50,9 +50,9 @@ struct SurfaceBrightness {
 
 /// A PSF given by its formula, smooth everywhere.
 SurfaceBrightness smooth_brightness(Density density);
-/// What a PSF table means: its running integral, known at the edges of the samples, is a natural cubic spline along both
-/// axes, and the surface brightness is its mixed derivative, 0 outside the table. Written down again from that definition
-/// in 80-bit arithmetic, by second derivatives instead of B-splines.
+/// What a PSF table means: its running integral, known at the edges of the samples, is a natural cubic spline along
+/// both axes, and the surface brightness is its mixed derivative, 0 outside the table. Written down again from that
+/// definition in 80-bit arithmetic, by second derivatives instead of B-splines.
 SurfaceBrightness table_brightness(const PsfTable& table);
 
 /// A rectangle of the detector in px.
