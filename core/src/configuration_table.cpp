@@ -22,6 +22,7 @@ constexpr std::array kSections = {
     Section{"Satellite/Repointing", "Errors of pointing the spacecraft anew each quarter."},
     Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
     Section{"PSF", "The image of a star."},
+    Section{"PSF/IntraPixel", "Sensitivity within a pixel, relative to the pixel's mean."},
     Section{"StellarField", "The stars and the sky behind them."},
     Section{"StellarField/StrayLight", "Light in every pixel that comes from outside the field."},
     Section{"CCD", "The detector and its electronics."},
@@ -50,10 +51,10 @@ constexpr std::array kSections = {
 
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
-  for (auto part :
-       {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters, psf_parameters,
-        stellar_field_parameters, sky_parameters, ccd_parameters, pixel_effect_parameters, readout_parameters,
-        cmos_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+  for (auto part : {simulation_parameters, renderer_parameters, satellite_parameters, motion_parameters,
+                    telescope_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters,
+                    sky_parameters, ccd_parameters, pixel_effect_parameters, readout_parameters, cmos_parameters,
+                    photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

@@ -14,6 +14,7 @@
 #include "effects/flat_field.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
+#include "effects/intra_pixel_response.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/nonlinearity.hpp"
@@ -26,6 +27,7 @@
 #include "effects/smearing.hpp"
 #include "effects/stars.hpp"
 #include "effects/stray_light.hpp"
+#include "effects/sub_pixel_stars.hpp"
 #include "effects/variable_stars.hpp"
 #include "effects/zodiacal_sky.hpp"
 
@@ -36,8 +38,9 @@ namespace {
 using CcdTable =
     EffectTable<ProperMotionEffect,                                                                    // Catalogue
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                Stars, VariableStars,                                                                  // Optics
+                Stars, SubPixelStars, VariableStars,                                                   // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
+                IntraPixelResponse,                                                                    // SubPixel
                 FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, ChargeInjection, OpenShutterSmearing,
                 FrameTransferSmearing,                                   // PixelMean
                 PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,  // PixelSample

@@ -1,6 +1,7 @@
 #include "effect_table_builder.hpp"
 #include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
+#include "effects/bad_pixels.hpp"
 #include "effects/bias.hpp"
 #include "effects/column_noise.hpp"
 #include "effects/cosmic_rays.hpp"
@@ -9,6 +10,7 @@
 #include "effects/flat_field.hpp"
 #include "effects/gain.hpp"
 #include "effects/inter_pixel_capacitance.hpp"
+#include "effects/intra_pixel_response.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/photon_noise.hpp"
@@ -25,6 +27,7 @@
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
 #include "effects/stray_light.hpp"
+#include "effects/sub_pixel_stars.hpp"
 #include "effects/telegraph_pixels.hpp"
 #include "effects/variable_stars.hpp"
 #include "effects/zodiacal_sky.hpp"
@@ -37,12 +40,13 @@ namespace {
 using CmosTable =
     EffectTable<ProperMotionEffect,                                                                    // Catalogue
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                Stars, VariableStars,                                                                  // Optics
+                Stars, SubPixelStars, VariableStars,                                                   // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
-                FlatField, Prnu, DarkCurrent, TelegraphPixels,                                         // PixelMean
+                IntraPixelResponse,                                                                    // SubPixel
+                FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,                  // PixelMean
                 PhotonNoise, CosmicRays, PixelSaturation,                                              // PixelSample
                 GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise, BiasEffect,
-                PixelOffset, Adc, RampReads, RampFitEffect>;  // Readout
+                PixelOffset, Adc, RampReads, RampFitEffect, BadPixelMap>;  // Readout
 
 }  // namespace
 

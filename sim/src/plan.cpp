@@ -177,8 +177,11 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   const bool steady = plan.epoch_exposures == 0 || plan.epoch_exposures >= kFewExposures;
   plan.still = !moves && steady;
   plan.tolerance = summary.tightest_tolerance();
-  plan.renderer = scene.mission().psf.model == PsfModel::kGaussian ? "analytic" : "prf";
-  plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
+  const SubPixelRenderer* map = scene.sub_pixel_renderer();
+  plan.renderer = to_string(scene.renderer().renderer);
+  plan.renderer_reason = scene.renderer().why;
+  plan.renderer_error = map != nullptr ? map->predicted_error() : scene.psf().approximation_error();
+  plan.psf_error = plan.renderer_error * summary.brightest_target_electrons;
   plan.knobs.variables = plan.runs("variable-stars");
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   if (moves) plan_jitter(scene, kShares.jitter, plan);
@@ -186,7 +189,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
   predict_times(plan, scene, costs);
-  plan.memory_bytes = predicted_memory(plan);
+  plan.memory_bytes = predicted_memory(plan, scene);
   return plan;
 }
 

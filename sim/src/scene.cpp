@@ -151,7 +151,11 @@ std::vector<std::size_t> full_frame_targets(const Scene& scene) {
 }
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
-    : mission_(mission), psf_(make_psf(mission)), jitter_(make_jitter(mission)) {
+    : mission_(mission),
+      renderer_(choose_renderer(mission)),
+      optical_psf_(make_psf(mission)),
+      psf_(make_recorded_psf(mission, optical_psf_)),
+      jitter_(make_jitter(mission)) {
   const CcdSettings& ccd = mission_.ccd;
   const SatelliteSettings& satellite = mission_.satellite;
   drift_ = thermo_elastic_drift(satellite, mission_.simulation, attitude_stream(mission_, DriftEffect::kSpec.id));
@@ -304,6 +308,14 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
   if (ccd.charge_injection.every_rows > 0) s.peak_pixel_bound += ccd.charge_injection.level.value();
   if (ccd.smearing.model != SmearingModel::kNone) s.brightest_column = brightest_column_bound(*this);
+  if (renderer_.renderer == Renderer::kSubPixel) {
+    // What a bright star may leave on a faint target, as with stamps.
+    constexpr double kNeighbours = 4.0;
+    constexpr double kRounding = 1e-13;
+    const double brightest = kNeighbours * std::max(s.brightest_electrons, 1.0);
+    sub_pixel_renderer_ = make_sub_pixel_renderer(mission_, kPsfShare * s.accuracy,
+                                                  std::max(kRounding, kPsfShare * s.tightest_tolerance() / brightest));
+  }
 }
 
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {

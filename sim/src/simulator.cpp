@@ -211,6 +211,7 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.still = false;
   state.lost_electrons = 0.0;
   state.clipped_pixels = 0;
+  state.ringing = {};
   std::ranges::fill(state.computed().flags.pixels(), std::uint8_t{0});
   fill_header(*scene_, camera_.camera, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);

@@ -17,6 +17,8 @@ namespace astroid {
 
 EffectNeed Stars::is_needed(const SceneSummary& scene) const {
   if (scene.stars == 0) return {false, "no star of the catalogue falls on the detector", 0.0, 0.0};
+  if (choose_renderer(*scene.mission).renderer == Renderer::kSubPixel)
+    return {false, "the sub-pixel renderer makes them", 0.0, 0.0};
   return {true,
           fmt::format("{} stars on the detector, {} of them targets; the brightest ({}) gives {:.4g} e- per exposure",
                       scene.stars, scene.targets, scene.brightest_id, scene.brightest_electrons),
@@ -37,7 +39,9 @@ void Stars::prepare(CameraState& camera, const PrepareContext& context) const {
 }
 
 void Stars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  const PixelPsf& psf = context.scene.psf();
+  // Sensitivity within the pixel is a part of what is recorded of a star.
+  const bool left_out = has_intra_pixel_response(context.scene.mission()) && !context.camera.intra_pixel;
+  const PixelPsf& psf = left_out ? context.scene.optical_psf() : context.scene.psf();
   const std::span<const Strip> strips = context.camera.strips;
   const auto number = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin) - strips.begin();
   const auto& lists = context.camera.stars[static_cast<std::size_t>(number)];

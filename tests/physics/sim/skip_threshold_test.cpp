@@ -192,6 +192,30 @@ TEST(SkippedBelowThreshold, ReadoutNoiseIsHarmless) {
             1.01 * kVarianceTolerance * p.scene->summary().faintest_target_electrons + 1e-3);
 }
 
+TEST(SkippedBelowThreshold, IntraPixelResponseIsHarmless) {
+  const auto set = [](Mission& m, double depth) { m.psf.intra_pixel.depth = depth; };
+  const double strength = threshold("intra-pixel-response", set, 1e-3);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned off = planned(mission);
+  ASSERT_FALSE(off.plan->runs("intra-pixel-response"));
+  // It is a part of the PSF, so it runs where the accuracy asked for is better.
+  mission.simulation.accuracy = Ppm(0.01);
+  const Planned on = planned(mission);
+  ASSERT_TRUE(on.plan->runs("intra-pixel-response"));
+  const std::vector<double> without = fluxes(off, off.plan, 0);
+  const std::vector<double> with = fluxes(on, on.plan, 0);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    const double tolerance = off.scene->summary().flux_tolerance(off.scene->stars()[i].electrons);
+    worst = std::max(worst, std::abs(with[i] - without[i]) / tolerance);
+  }
+  std::printf("intra-pixel-response at %.3g: moves a flux by at most %.2f of its tolerance\n", strength, worst);
+  EXPECT_LE(worst, 1.0);
+  EXPECT_GT(worst, 0.0);
+}
+
 TEST(SkippedBelowThreshold, FullWellIsNeverReached) {
   const auto set = [](Mission& m, double inverse) { m.ccd.full_well = Electrons(1.0 / inverse); };
   const double strength = threshold("full-well", set, 1e-3);

@@ -58,8 +58,10 @@ struct AccuracyShares {
 struct Plan {
   std::vector<PlannedEffect> effects;  ///< every effect of the table, on or off
   PlanKnobs knobs;
-  std::string renderer;  ///< analytic or prf
-  std::string pixels;    ///< full frame, sub-field or windows, and what is exact
+  std::string renderer;  ///< analytic, prf or subpixel
+  std::string renderer_reason;
+  double renderer_error = 0.0;  ///< of a star's flux, relative
+  std::string pixels;           ///< full frame, sub-field or windows, and what is exact
   std::shared_ptr<const PixelLayout>
       layout;          ///< the computed pixels: exposed region r holds the scene's region r, or one all of them
   bool still = false;  ///< exposures share a noiseless image

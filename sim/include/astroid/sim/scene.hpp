@@ -19,6 +19,7 @@
 #include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "astroid/sim/attitude_trend.hpp"
+#include "astroid/sim/renderer.hpp"
 #include "astroid/sim/scene_summary.hpp"
 
 namespace astroid {
@@ -60,7 +61,13 @@ class Scene {
   /// Indices of the targets, in catalogue order.
   [[nodiscard]] std::span<const std::size_t> targets() const { return targets_; }
   [[nodiscard]] const std::shared_ptr<const PixelLayout>& layout() const { return layout_; }
+  /// What the detector records of a star: with the common response within the pixel, if there is one.
   [[nodiscard]] const PixelPsf& psf() const { return *psf_; }
+  /// What falls on the detector.
+  [[nodiscard]] const PixelPsf& optical_psf() const { return *optical_psf_; }
+  [[nodiscard]] const RendererChoice& renderer() const { return renderer_; }
+  /// Null unless it is chosen.
+  [[nodiscard]] const SubPixelRenderer* sub_pixel_renderer() const { return sub_pixel_renderer_.get(); }
   [[nodiscard]] const std::optional<SkyProjection>& projection() const { return projection_; }
   [[nodiscard]] const SceneSummary& summary() const { return summary_; }
   /// How stars vary.
@@ -88,9 +95,12 @@ class Scene {
   std::vector<std::size_t> targets_;
   std::vector<VariableStar> variables_;
   std::shared_ptr<const PixelLayout> layout_;
+  RendererChoice renderer_;
+  std::shared_ptr<const PixelPsf> optical_psf_;
   std::shared_ptr<const PixelPsf> psf_;
   std::shared_ptr<const AttitudeModel> jitter_;
   AttitudeTrend drift_, repointing_, trend_;
+  std::shared_ptr<const SubPixelRenderer> sub_pixel_renderer_;
   std::shared_ptr<const AttitudeModel> attitude_;
   ElectronsPerSecond rate_of_s10_{0.0};   // of a pixel; where the sky is zodiacal
   std::array<SkyPosition, 4> corners_{};  // of the detector, likewise
