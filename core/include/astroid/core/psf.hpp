@@ -8,6 +8,7 @@
 
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/image.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
@@ -87,6 +88,39 @@ class PixelPsf {
 /// @complexity   2 (n + 1) tails and n^2 products for n x n pixels, no allocation (bench: BM_GaussianStamp)
 std::shared_ptr<const PixelPsf> make_gaussian_psf(double sigma);
 
+/// What a PSF with wings leaves out, and what the detector does to it.
+struct PsfWings {
+  static constexpr int kLongestReach = 90;
+  int reach = 30;          ///< px: half the side of the square beyond which light is left out, 2 .. kLongestReach
+  double diffusion = 0.0;  ///< px: rms of the charge diffusion, 0 .. 3
+};
+
+/// Moffat's profile, (1 + r²/alpha²)^(-beta), integrated over pixels: exact fluxes at every sub-pixel phase of a
+/// library, four-point interpolation in between, with more phases within 8 px than beyond (renderer `prf`).
+///
+/// Normalised on infinite support: (1 + r²/alpha²)^(1-beta) of the light is farther than r from the star, and what is
+/// beyond the reach is left out, not redistributed.
+/// @param fwhm      px, 0.2 .. 20; alpha = fwhm / (2 sqrt(2^(1/beta) - 1))
+/// @param beta      more than 1, at most 100
+/// @param accuracy  relative flux error allowed to the interpolation; decides the number of phases.
+/// @param phases    of the core per axis, or 0 to let `accuracy` decide.
+/// @accuracy  approximation_error(), tested against adaptive quadrature (Moffat.HasTheFluxOfAdaptiveQuadrature)
+/// @source Moffat1969, Trujillo2001   @throws InputError naming every unusable parameter
+std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings, double accuracy,
+                                                int phases = 0);
+
+/// Diffraction pattern of a round aperture with a round central obscuration, integrated over pixels like
+/// make_moffat_psf().
+///
+/// Normalised on infinite support: about 2 / (pi² (1 - obscuration) r / (lambda/D)) of the light is farther than r from
+/// the star; what is beyond the reach is left out.
+/// @param lambda_over_d  px, 0.3 .. 20: wavelength over diameter; the first dark ring without obscuration is at 1.2197
+///                       of it
+/// @param obscuration    diameter of the central obscuration over that of the aperture, 0 to less than 1
+/// @source Schroeder2000 §10.2
+std::shared_ptr<const PixelPsf> make_airy_psf(double lambda_over_d, double obscuration, const PsfWings& wings,
+                                              double accuracy, int phases = 0);
+
 /// A PSF given as a table: surface brightness on a grid finer than the pixel.
 struct PsfTable {
   Image<double, unit::Relative> samples;  ///< any normalisation; must be finite and have a positive sum
@@ -99,6 +133,12 @@ struct PsfTable {
 /// CRPIX1/2 (1-based) or the geometric centre of the image.
 /// @throws InputError naming the file and keyword; EnvironmentError when the file cannot be read.
 PsfTable read_psf_table(const std::string& path);
+
+/// The table after its charge has diffused: convolved with a Gaussian of rms `sigma` px, sums kept, and extended by its
+/// reach. Samples wider than sigma are divided first, along the spline of make_prf_psf().
+/// @accuracy  1e-8 of the flux for tables of at least a sample per sigma (test: Diffusion.AddsItsVariance)
+/// @throws InputError when sigma is negative or not finite.
+PsfTable diffuse_psf_table(const PsfTable& table, Pixels sigma);
 
 /// Pixel-integrated library over sub-pixel phases with four-point Lagrange interpolation (renderer `prf`).
 ///
