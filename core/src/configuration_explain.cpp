@@ -66,6 +66,8 @@ std::string kind_text(const Parameter& parameter) {
       return "date and time, ISO 8601";
     case Kind::kIntegerList:
       return "integers separated by blanks";
+    case Kind::kRealList:
+      return "numbers separated by blanks";
   }
   return {};
 }

@@ -13,7 +13,7 @@
 
 namespace astroid::configuration {
 
-enum class Kind { kReal, kInteger, kBoolean, kText, kChoice, kFile, kTime, kIntegerList };
+enum class Kind { kReal, kInteger, kBoolean, kText, kChoice, kFile, kTime, kIntegerList, kRealList };
 
 /// An interval of numbers in the parameter's documented unit; an open end excludes its bound.
 struct Range {
@@ -44,6 +44,7 @@ struct Value {
   bool is_keyword = false;             ///< kReal: the parameter's keyword was written instead of a number
   std::string text;                    ///< every kind: canonical text, in the documented unit
   std::vector<std::int64_t> integers;  ///< kIntegerList
+  std::vector<double> reals;           ///< kRealList, in the documented unit
 };
 
 /// One parameter. `assign` copies a checked value to its place in the Mission.

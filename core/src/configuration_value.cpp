@@ -167,20 +167,40 @@ ParsedValue parse_time(const Parameter& parameter, std::string_view text) {
   return {value, std::nullopt};
 }
 
-ParsedValue parse_integer_list(const Parameter& parameter, std::string_view text) {
+/// Numbers separated by blanks or commas, each parsed by `parse` and handed to `take`.
+template <class Parse, class Take>
+std::optional<ParsedValue> parse_items(std::string_view text, Parse&& parse, Take&& take) {
   constexpr std::string_view kSeparators = " \t\r\n,";
-  Value list;
   while (!(text = text.substr(std::min(text.size(), text.find_first_not_of(kSeparators)))).empty()) {
     const std::string_view item = text.substr(0, text.find_first_of(kSeparators));
-    ParsedValue parsed = parse_integer(parameter, item);
+    ParsedValue parsed = parse(item);
     if (parsed.error) {
       parsed.error->message = fmt::format("\"{}\" is {}", item, parsed.error->message);
       return parsed;
     }
-    list.integers.push_back(parsed.value.integer);
+    take(parsed.value);
     text.remove_prefix(item.size());
   }
+  return std::nullopt;
+}
+
+ParsedValue parse_integer_list(const Parameter& parameter, std::string_view text) {
+  Value list;
+  if (const auto bad = parse_items(
+          text, [&](std::string_view item) { return parse_integer(parameter, item); },
+          [&](const Value& value) { list.integers.push_back(value.integer); }))
+    return *bad;
   list.text = fmt::format("{}", fmt::join(list.integers, " "));
+  return {list, std::nullopt};
+}
+
+ParsedValue parse_real_list(const Parameter& parameter, std::string_view text, std::string_view unit) {
+  Value list;
+  if (const auto bad = parse_items(
+          text, [&](std::string_view item) { return parse_real(parameter, item, unit); },
+          [&](const Value& value) { list.reals.push_back(value.real); }))
+    return *bad;
+  list.text = fmt::format("{}", fmt::join(list.reals, " "));
   return {list, std::nullopt};
 }
 
@@ -220,6 +240,8 @@ std::string expectation(const Parameter& parameter) {
       return number_expectation("an integer", parameter);
     case Kind::kIntegerList:
       return number_expectation("integers separated by blanks, each", parameter);
+    case Kind::kRealList:
+      return number_expectation("numbers separated by blanks, each", parameter);
     case Kind::kBoolean:
       return "on or off";
     case Kind::kChoice:
@@ -236,7 +258,8 @@ std::string expectation(const Parameter& parameter) {
 
 ParsedValue parse_value(const Parameter& parameter, std::string_view text, std::string_view unit,
                         const std::vector<std::filesystem::path>& folders) {
-  if (text.empty() && parameter.kind != Kind::kIntegerList) return failure(parameter, "has no value");
+  if (text.empty() && parameter.kind != Kind::kIntegerList && parameter.kind != Kind::kRealList)
+    return failure(parameter, "has no value");
   switch (parameter.kind) {
     case Kind::kReal:
       return parse_real(parameter, text, unit);
@@ -244,6 +267,8 @@ ParsedValue parse_value(const Parameter& parameter, std::string_view text, std::
       return parse_integer(parameter, text);
     case Kind::kIntegerList:
       return parse_integer_list(parameter, text);
+    case Kind::kRealList:
+      return parse_real_list(parameter, text, unit);
     case Kind::kBoolean:
       return parse_boolean(parameter, text);
     case Kind::kChoice:

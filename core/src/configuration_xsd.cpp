@@ -22,6 +22,7 @@ using configuration::xml_escaped;
 constexpr std::string_view kNumberPattern = R"([+\-]?([0-9]+(\.[0-9]*)?|\.[0-9]+)([eE][+\-]?[0-9]+)?)";
 constexpr std::string_view kTimePattern = R"([0-9]{4}-[0-9]{2}-[0-9]{2}(T[0-9]{2}:[0-9]{2}(:[0-9]{2}(\.[0-9]+)?)?)?)";
 constexpr std::string_view kIntegerListPattern = "[0-9+, ]*";
+constexpr std::string_view kRealListPattern = R"([0-9+\-.eE, ]*)";
 
 std::string type_name(std::string_view path) {
   std::string name(path);
@@ -94,6 +95,8 @@ std::string value_type(const Parameter& parameter) {
       return restriction("token", facet("pattern", kTimePattern));
     case Kind::kIntegerList:
       return restriction("token", facet("pattern", kIntegerListPattern));
+    case Kind::kRealList:
+      return restriction("token", facet("pattern", kRealListPattern));
     case Kind::kText:
     case Kind::kFile:
       return restriction("token", facet("minLength", "1"));

@@ -12,9 +12,9 @@ constexpr std::size_t kMostCells = 9;
 }  // namespace
 
 MovingImage::MovingImage(AttitudePolynomial polynomial)
-    : polynomial_(std::move(polynomial)), inverse_(coefficients_from_values(polynomial_)) {}
+    : polynomial_(std::move(polynomial)), inverse_(coefficients_from_values(polynomial_)), cells_(kMostCells) {}
 
-std::shared_ptr<const MovingImageCell> MovingImage::make_cell(const Attitude& centre, const RenderAt& render) const {
+MovingImageCell MovingImage::make_cell(const Attitude& centre, const RenderAt& render) const {
   const std::vector<Attitude> points = interpolation_points(polynomial_, centre);
   const std::size_t n = points.size();
   // One image after the other is rendered and added to every coefficient, so few are held at a time.
@@ -30,27 +30,14 @@ std::shared_ptr<const MovingImageCell> MovingImage::make_cell(const Attitude& ce
       for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += weight * values[i];
     }
   }
-  auto cell = std::make_shared<MovingImageCell>();
-  cell->base = std::move(coefficients[0]);
+  MovingImageCell cell;
+  cell.base = std::move(coefficients[0]);
   for (std::size_t t = 1; t < n; ++t) {
-    Plane<float, unit::ExpectedElectrons>& map = cell->maps.emplace_back(cell->base.shared_layout());
+    Plane<float, unit::ExpectedElectrons>& map = cell.maps.emplace_back(cell.base.shared_layout());
     const std::span<const double> values = std::as_const(coefficients[t]).pixels();
     for (std::size_t i = 0; i < values.size(); ++i) map.pixels()[i] = static_cast<float>(values[i]);
   }
   return cell;
-}
-
-std::shared_ptr<const MovingImageCell> MovingImage::cell(const Attitude& centre, const RenderAt& render) const {
-  const std::array<double, 3> key{centre.yaw, centre.pitch, centre.roll};
-  const std::lock_guard lock(mutex_);  // whoever needs the same cell has to wait for it anyway
-  const auto found = cells_.find(key);
-  if (found != cells_.end()) return found->second;
-  if (cells_.size() == kMostCells) {
-    cells_.erase(age_.front());
-    age_.erase(age_.begin());
-  }
-  age_.push_back(key);
-  return cells_[key] = make_cell(centre, render);
 }
 
 std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::span<const Attitude> attitudes) {
@@ -61,9 +48,11 @@ std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::s
   return weights;
 }
 
-MovingImage::Exposure MovingImage::exposure(const Attitude& mean, std::span<const float> weights,
+MovingImage::Exposure MovingImage::exposure(std::int64_t epoch, const Attitude& mean, std::span<const float> weights,
                                             const RenderAt& render) const {
-  return {.cell = cell(cell_centre(polynomial_, mean), render), .weights = weights};
+  const Attitude centre = cell_centre(polynomial_, mean);
+  const Key key{.epoch = epoch, .centre = {centre.yaw, centre.pitch, centre.roll}};
+  return {.cell = cells_.get(key, [&] { return make_cell(centre, render); }), .weights = weights};
 }
 
 void MovingImage::Exposure::recall(const Strip& strip, std::span<double> expected) const {

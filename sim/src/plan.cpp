@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <span>
 #include <utility>
 
 #include "astroid/core/math.hpp"
@@ -17,6 +19,8 @@ namespace {
 
 /// A target's aperture may touch the wings of this many equally bright neighbours.
 constexpr double kNeighbours = 4.0;
+/// A recalled image that changes more often than this is not worth keeping.
+constexpr std::int64_t kFewExposures = 30;
 /// Flux ratio of one magnitude, the width of a stamp tier.
 constexpr double kTier = 2.51188643150958;
 
@@ -158,6 +162,43 @@ bool Plan::runs(std::string_view effect) const {
                              [&](const PlannedEffect& e) { return e.effect->spec().name == effect && e.need.needed; });
 }
 
+namespace {
+
+/// The pixels that the delivered ones depend on, through every effect that runs.
+std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& plan) {
+  const PixelLayout& delivered = *scene.layout();
+  const std::span<const Rectangle> exposed = delivered.exposed_regions();
+  std::vector<Rectangle> regions(exposed.begin(), exposed.end());
+  for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned)
+    if (planned->need.needed) planned->effect->support(scene, regions);
+  if (std::ranges::equal(regions, exposed)) return scene.layout();
+  const std::span<const Rectangle> reference = delivered.reference_regions();
+  return std::make_shared<const PixelLayout>(std::move(regions),
+                                             std::vector<Rectangle>(reference.begin(), reference.end()));
+}
+
+std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
+  double steady = std::numeric_limits<double>::infinity();
+  for (const PlannedEffect& planned : plan.effects)
+    if (planned.need.needed) steady = std::min(steady, planned.need.steady.value());
+  if (std::isinf(steady)) return 0;
+  // Whatever the length of the run, so that a longer run begins with the shorter one.
+  constexpr double kMost = 1e9;
+  return static_cast<std::int64_t>(std::clamp(steady / scene.mission().simulation.cycle.value(), 1.0, kMost));
+}
+
+}  // namespace
+
+Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch) {
+  const std::int64_t length = std::max<std::int64_t>(1, plan.epoch_exposures);
+  const double middle = static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1);
+  const Seconds time = middle * scene.mission().simulation.cycle + 0.5 * scene.mission().simulation.exposure_time;
+  Conditions conditions;
+  for (const PlannedEffect& planned : plan.effects)
+    if (planned.need.needed) planned.effect->set_conditions(scene, time, conditions);
+  return conditions;
+}
+
 Plan make_plan(const Scene& scene) {
   constexpr AccuracyShares kShares;
   Plan plan;
@@ -168,16 +209,21 @@ Plan make_plan(const Scene& scene) {
     moves = moves || (planned.need.needed && effect->spec().level == EffectLevel::kPointing);
     plan.effects.push_back(std::move(planned));
   }
-  plan.still = !moves;
+  plan.reads = scene.mission().simulation.type == DetectorType::kCmos ? scene.mission().cmos.reads : 1;
+  plan.layout = plan_layout(scene, plan);
+  plan.epoch_exposures = plan_epochs(scene, plan);
+  // Images that are used a few times only are rendered for each exposure instead.
+  const bool steady = plan.epoch_exposures == 0 || plan.epoch_exposures >= kFewExposures;
+  plan.still = !moves && steady;
   plan.tolerance = summary.tightest_tolerance();
   plan.renderer = scene.mission().psf.model == PsfModel::kGaussian ? "analytic" : "prf";
   plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
   plan_jitter(scene, kShares.jitter, moves, plan);
-  plan_polynomial(scene, kShares.jitter, plan);
+  if (steady) plan_polynomial(scene, kShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan, plan.approximations);
   plan.seconds_per_exposure = predicted_seconds(plan, scene);
-  plan.memory_bytes = predicted_memory(plan, scene);
+  plan.memory_bytes = predicted_memory(plan);
   return plan;
 }
 

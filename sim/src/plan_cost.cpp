@@ -62,7 +62,7 @@ double renderings(const Plan& plan) {
 double stars_cost(const Plan& plan, const Scene& scene) {
   const StarCost& cost = star_cost(plan);
   std::vector<Rectangle> areas;
-  for (const Strip& strip : make_strips(*scene.layout(), kStripPixels))
+  for (const Strip& strip : make_strips(*plan.layout, kStripPixels))
     areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
   double nanoseconds = 0.0;
   auto next = areas.begin();
@@ -106,7 +106,7 @@ double maps_bytes(std::size_t terms, double pixels) {
 
 double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Scene& scene) {
   const EffectSpec& spec = effect.effect->spec();
-  const auto pixels = static_cast<double>(scene.layout()->size());
+  const auto pixels = static_cast<double>(plan.layout->size());
   if (!effect.need.needed) return 0.0;
   if (recalls(plan) && spec.level <= EffectLevel::kPixelMean) {
     const bool moves = plan.knobs.jitter == JitterTreatment::kPolynomial;
@@ -119,7 +119,7 @@ double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Sc
 }
 
 double predicted_seconds(const Plan& plan, const Scene& scene) {
-  const PixelLayout& layout = *scene.layout();
+  const PixelLayout& layout = *plan.layout;
   const double begin = plan.still ? kRecall : recalls(plan) ? 0.0 : kClear;  // of a pixel
   double seconds = kNanosecond * (begin * static_cast<double>(layout.size()) +
                                   kRegion * static_cast<double>(layout.regions().size()));
@@ -127,11 +127,11 @@ double predicted_seconds(const Plan& plan, const Scene& scene) {
   return seconds;
 }
 
-double predicted_memory(const Plan& plan, const Scene& scene) {
+double predicted_memory(const Plan& plan) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
   if (plan.runs("full-well")) bytes_per_pixel += sizeof(double);  // drawn electrons, column by column
   constexpr double kStripPlanes = 3.0;                            // expected and drawn electrons, ADU
-  return bytes_per_pixel * static_cast<double>(scene.layout()->size()) +
+  return bytes_per_pixel * static_cast<double>(plan.layout->size()) +
          kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);
 }
 

@@ -61,7 +61,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
         "  jitter    {}, {} terms, their means taken over {} step(s) of an exposure: at most {:.2g} ppm of the\n"
         "            brightest target; {} fixed maps, {:.3g} MiB for all workers\n",
         to_string(plan.knobs.jitter), terms, plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s), terms,
-        maps_bytes(terms, static_cast<double>(scene.layout()->size())) / kMebi);
+        maps_bytes(terms, static_cast<double>(plan.layout->size())) / kMebi);
   } else {
     out += fmt::format("  jitter    {} with {} step(s) in an exposure: at most {:.2g} ppm of the brightest target\n",
                        to_string(plan.knobs.jitter), plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s));

@@ -14,6 +14,7 @@
 #include "astroid/core/photometric.hpp"
 #include "effects/jitter_model.hpp"
 #include "psf_sensitivity.hpp"
+#include "reference_pixels.hpp"
 
 namespace astroid {
 
@@ -33,6 +34,8 @@ std::shared_ptr<const AttitudeModel> make_attitude(const Mission& mission) {
                                      make_stream(mission.simulation.seed, JitterModelEffect::kSpec.id, 0, 0));
     case JitterModel::kFile:
       return make_file_attitude(mission.satellite.jitter.file, mission.simulation);
+    case JitterModel::kSpectrum:
+      break;  // no configuration says so yet
   }
   throw BugError("unknown jitter model");
 }
@@ -179,7 +182,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
         .expected = "targets on the detector",
         .message =
             fmt::format("none of the {} stars is a target, so there is no window to compute", catalogue.stars.size())});
-  layout_ = std::make_shared<const PixelLayout>(std::move(regions));
+  std::vector<Rectangle> reference = reference_regions(regions, detector(), ccd.reference);
+  layout_ = std::make_shared<const PixelLayout>(std::move(regions), reference);
 
   SceneSummary& s = summary_;
   s.mission = &mission_;

@@ -17,8 +17,15 @@ bool is_pointing(const EffectSpec& spec) {
 bool is_expectation(const EffectSpec& spec) {
   return spec.level <= EffectLevel::kPixelMean;
 }
+bool makes_light(const EffectSpec& spec) {
+  return spec.role == ImageRole::kVaryingLight;
+}
 bool draws_electrons(const EffectSpec& spec) {
   return (spec.reads & plane_bit::kExpected) != 0 && (spec.writes & plane_bit::kSampled) != 0;
+}
+
+void add_image(std::span<double> sum, std::span<const double> image) {
+  for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += image[i];
 }
 
 /// Attitude is the spacecraft's: its streams leave out the camera, so cameras share it.
@@ -71,8 +78,11 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
     : scene_(std::move(scene)),
       plan_(std::move(plan)),
       attitude_(std::move(attitude)),
-      whole_(whole_strip(*scene_->layout())) {
-  camera_.strips = make_strips(*scene_->layout(), kStripPixels);
+      whole_(whole_strip(*plan_->layout)),
+      exposed_(exposed_strip(*plan_->layout)) {
+  constexpr std::size_t kMostEpochs = 3;  // workers are at most a block of exposures apart
+  camera_.layout = plan_->layout;
+  camera_.strips = make_strips(*plan_->layout, kStripPixels);
   for (const Strip& strip : camera_.strips) longest_strip_ = std::max(longest_strip_, strip.size());
   if (attitude_ == nullptr) attitude_ = make_attitude_series(*scene_, *plan_);
   camera_.camera = camera;
@@ -83,35 +93,59 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
       planned.effect->prepare(
           camera_, {.scene = *scene_, .knobs = plan_->knobs, .stream = streams_.back(), .attitude = *attitude_});
   }
-  if (plan_->still) still_ = render({});
+  if (plan_->still) {
+    still_ = std::make_shared<const StillImages>(kMostEpochs);
+    still_->get(0, [this] { return render({}, conditions_of(*plan_, *scene_, 0)); });
+  }
   if (plan_->knobs.jitter == JitterTreatment::kPolynomial)
     moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial);
   stages_ = make_stages(source(), false);
 }
 
 Simulator::Source Simulator::source() const {
-  return !still_.empty() || moving_ != nullptr ? Source::kRecall : Source::kRender;
+  return still_ != nullptr || moving_ != nullptr ? Source::kRecall : Source::kRender;
+}
+
+bool Simulator::varies() const {
+  return std::ranges::any_of(plan_->effects,
+                             [](const PlannedEffect& e) { return e.need.needed && makes_light(e.effect->spec()); });
+}
+
+std::vector<Simulator::Step> Simulator::expected_steps(Source source) const {
+  std::vector<Step> steps;
+  std::size_t first = plan_->effects.size();
+  for (std::size_t i = 0; i < plan_->effects.size(); ++i) {
+    const EffectSpec& spec = plan_->effects[i].effect->spec();
+    if (is_pointing(spec) || !is_expectation(spec)) continue;  // begin()
+    first = std::min(first, i);
+    // What is recalled has everything but the varying light, which goes its own way through the responses.
+    const bool applies = source == Source::kRender || makes_light(spec) || spec.role == ImageRole::kResponse;
+    if (plan_->effects[i].need.needed && applies) steps.push_back({Act::kApply, i});
+  }
+  if (source == Source::kRender || varies()) steps.insert(steps.begin(), {Act::kClear, first});
+  if (source == Source::kRecall && varies()) steps.push_back({Act::kAddRecalled, first});
+  if (source == Source::kRecall && !varies()) steps = {{Act::kRecall, first}};
+  return steps;
 }
 
 std::vector<Simulator::Stage> Simulator::make_stages(Source source, bool until_expected) const {
   std::vector<Stage> stages;
-  const auto add = [&stages](bool local, Step step) {
-    if (stages.empty() || stages.back().local != local) stages.push_back({.local = local, .steps = {}});
+  const auto add = [&](Step step) {
+    const EffectSpec& spec = plan_->effects[step.effect].effect->spec();
+    const bool local = step.act != Act::kApply || is_local(spec);
+    const bool per_read = plan_->reads > 1 && spec.per_read;
+    if (stages.empty() || stages.back().local != local || stages.back().per_read != per_read)
+      stages.push_back({.local = local, .per_read = per_read, .steps = {}});
     stages.back().steps.push_back(step);
   };
-  bool begun = false;
-  for (std::size_t i = 0; i < plan_->effects.size(); ++i) {
+  for (const Step& step : expected_steps(source)) add(step);
+  for (std::size_t i = 0; !until_expected && i < plan_->effects.size(); ++i) {
     const EffectSpec& spec = plan_->effects[i].effect->spec();
-    const bool needed = plan_->effects[i].need.needed;
-    if (is_pointing(spec)) continue;  // begin()
-    if (is_expectation(spec)) {
-      if (!begun) add(true, {source == Source::kRecall ? Act::kRecall : Act::kClear, i});
-      begun = true;
-      if (source == Source::kRender && needed) add(is_local(spec), {Act::kApply, i});
-    } else if (!until_expected && needed) {
-      add(is_local(spec), {Act::kApply, i});
-    } else if (!until_expected && draws_electrons(spec)) {
-      add(true, {Act::kTakeExpected, i});
+    if (is_expectation(spec)) continue;
+    if (plan_->effects[i].need.needed) {
+      add({Act::kApply, i});
+    } else if (draws_electrons(spec)) {
+      add({Act::kTakeExpected, i});
     }
   }
   return stages;
@@ -119,18 +153,23 @@ std::vector<Simulator::Stage> Simulator::make_stages(Source source, bool until_e
 
 ExposureState Simulator::make_state() const {
   ExposureState state;
-  const std::shared_ptr<const PixelLayout>& layout = scene_->layout();
+  const std::shared_ptr<const PixelLayout>& layout = plan_->layout;
   state.expected = {layout, longest_strip_};
   state.sampled = {layout, longest_strip_};
   state.analog = {layout, longest_strip_};
-  state.frame.pixels = Plane<float, unit::Adu>(layout);
-  state.frame.flags = Plane<std::uint8_t, unit::Flags>(layout);
+  state.frame.pixels = Plane<float, unit::Adu>(scene_->layout());
+  state.frame.flags = Plane<std::uint8_t, unit::Flags>(scene_->layout());
+  if (layout != scene_->layout()) {
+    state.more = std::make_unique<Frame>();
+    state.more->pixels = Plane<float, unit::Adu>(layout);
+    state.more->flags = Plane<std::uint8_t, unit::Flags>(layout);
+  }
   state.effect_seconds.assign(plan_->effects.size(), 0.0);
-  // An effect that needs more than a strip finds whole planes.
+  // An effect that needs more than a strip finds whole planes, and so does the next read.
   std::uint32_t whole = 0;
   for (const Stage& stage : stages_)
     for (const Step& step : stage.steps)
-      if (!stage.local)
+      if (!stage.local || plan_->reads > 1)
         whole |= plan_->effects[step.effect].effect->spec().reads | plan_->effects[step.effect].effect->spec().writes;
   if ((whole & plane_bit::kExpected) != 0) state.expected.make_whole();
   if ((whole & plane_bit::kSampled) != 0) state.sampled.make_whole();
@@ -141,25 +180,34 @@ ExposureState Simulator::make_state() const {
 void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.camera = camera_.camera;
   state.exposure = exposure;
+  state.read = 0;
   state.attitude = {};
   state.attitude_steps = {};
-  state.still = nullptr;
+  state.recalled = nullptr;
+  state.still = false;
   state.lost_electrons = 0.0;
   state.clipped_pixels = 0;
-  std::ranges::fill(state.frame.flags.pixels(), std::uint8_t{0});
+  std::ranges::fill(state.computed().flags.pixels(), std::uint8_t{0});
   fill_header(*scene_, camera_.camera, exposure, state.frame.header);
+  const std::int64_t epoch = plan_->epoch(exposure);
+  state.conditions = conditions_of(*plan_, *scene_, epoch);
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
     if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
       take({Act::kApply, i}, state, whole_);
+  const Conditions& conditions = state.conditions;
+  if (still_ != nullptr) {
+    state.recalled = still_->get(epoch, [&] { return render({}, conditions); });
+    state.still = !varies();
+  }
   if (moving_ == nullptr) return;
   const std::size_t maps = plan_->knobs.polynomial.terms.size() - 1;
   const auto weights = std::span(attitude_->weights).subspan(static_cast<std::size_t>(exposure) * maps, maps);
-  state.moving = moving_->exposure(state.attitude.mean, weights, [this](const Attitude& a) { return render(a); });
+  state.moving = moving_->exposure(epoch, state.attitude.mean, weights,
+                                   [&](const Attitude& attitude) { return render(attitude, conditions); });
 }
 
 void Simulator::simulate(std::int64_t exposure, ExposureState& state, const StepObserver& observer) const {
   begin(exposure, state);
-  if (!still_.empty() && !observer) state.still = &still_;
   if (observer) {
     state.expected.make_whole();
     state.sampled.make_whole();
@@ -170,38 +218,82 @@ void Simulator::simulate(std::int64_t exposure, ExposureState& state, const Step
     if (source() == Source::kRecall) run(make_stages(Source::kRender, true), state, observer);
   }
   run(stages_, state, observer);
+  deliver(state);
 }
 
 void Simulator::expect(std::int64_t exposure, ExposureState& state) const {
   begin(exposure, state);
   state.expected.make_whole();
   run(make_stages(source(), true), state);
+  if (!state.still) return;
+  std::ranges::copy(state.recalled->pixels(), state.expected.whole().pixels().begin());
+  state.still = false;
 }
 
-Plane<double, unit::ExpectedElectrons> Simulator::render(const Attitude& attitude) const {
+Plane<double, unit::ExpectedElectrons> Simulator::render(const Attitude& attitude, const Conditions& conditions) const {
   ExposureState state;
-  state.expected = {scene_->layout(), longest_strip_};
+  state.expected = {plan_->layout, longest_strip_};
   state.expected.make_whole();
   state.effect_seconds.assign(plan_->effects.size(), 0.0);
   state.attitude.mean = attitude;
-  run(make_stages(Source::kRender, true), state);
+  state.conditions = conditions;
+  std::vector<Stage> stages = make_stages(Source::kRender, true);
+  for (Stage& stage : stages)
+    std::erase_if(stage.steps, [this](const Step& step) {
+      return step.act == Act::kApply && makes_light(plan_->effects[step.effect].effect->spec());
+    });
+  run(stages, state);
   return std::move(state.expected.whole());
 }
 
 void Simulator::run(const std::vector<Stage>& stages, ExposureState& state, const StepObserver& observer) const {
-  for (const Stage& stage : stages) {
-    const bool by_strips = stage.local && !observer;
-    for (const Strip& strip : by_strips ? std::span<const Strip>(camera_.strips) : std::span(&whole_, 1)) {
-      auto last = std::chrono::steady_clock::now();
-      for (const Step& step : stage.steps) {
-        take(step, state, strip);
-        const auto now = std::chrono::steady_clock::now();
-        state.effect_seconds[step.effect] += std::chrono::duration<double>(now - last).count();
-        last = now;
-        if (observer && step.act == Act::kApply) observer(plan_->effects[step.effect].effect->spec(), state);
-      }
-    }
+  for (auto stage = stages.begin(); stage != stages.end();) {
+    const auto next = std::find_if(stage, stages.end(), [&](const Stage& s) { return s.per_read != stage->per_read; });
+    const int reads = stage->per_read ? plan_->reads : 1;
+    for (state.read = 0; state.read < reads; ++state.read)
+      for (auto s = stage; s != next; ++s) run(*s, state, observer);
+    state.read = 0;
+    stage = next;
   }
+}
+
+void Simulator::run(const Stage& stage, ExposureState& state, const StepObserver& observer) const {
+  using Clock = std::chrono::steady_clock;
+  auto last = Clock::now();
+  const auto timed = [&](const Step& step, const Strip& strip) {
+    if (!is_for(step, strip)) return;
+    take(step, state, strip);
+    const auto now = Clock::now();
+    state.effect_seconds[step.effect] += std::chrono::duration<double>(now - last).count();
+    last = now;
+  };
+  if (observer) {  // who wants to see every step on the whole frame
+    for (const Step& step : stage.steps) {
+      if (stage.local)
+        for (const Strip& strip : camera_.strips) timed(step, strip);
+      else
+        timed(step, exposed_or_whole(step));
+      if (step.act == Act::kApply) observer(plan_->effects[step.effect].effect->spec(), state);
+    }
+    return;
+  }
+  if (!stage.local) {
+    for (const Step& step : stage.steps) timed(step, exposed_or_whole(step));
+    return;
+  }
+  for (const Strip& strip : camera_.strips) {
+    last = Clock::now();
+    for (const Step& step : stage.steps) timed(step, strip);
+  }
+}
+
+const Strip& Simulator::exposed_or_whole(const Step& step) const {
+  return plan_->effects[step.effect].effect->spec().pixels == PixelSet::kAll ? whole_ : exposed_;
+}
+
+bool Simulator::is_for(const Step& step, const Strip& strip) const {
+  return strip.exposed || step.act != Act::kApply ||
+         plan_->effects[step.effect].effect->spec().pixels == PixelSet::kAll;
 }
 
 void Simulator::take(const Step& step, ExposureState& state, const Strip& strip) const {
@@ -219,17 +311,39 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
       std::ranges::fill(state.expected.pixels(strip), 0.0);
       return;
     case Act::kRecall:
-      if (state.still != nullptr) return;  // read where it lies
-      if (moving_ != nullptr) {
-        state.moving.recall(strip, state.expected.pixels(strip));
-      } else {
-        std::ranges::copy(still_.pixels().subspan(strip.begin, strip.size()), state.expected.pixels(strip).begin());
+      if (moving_ != nullptr) state.moving.recall(strip, state.expected.pixels(strip));
+      return;  // a still image is read where it lies
+    case Act::kAddRecalled: {
+      const std::span<double> expected = state.expected.pixels(strip);
+      if (state.recalled != nullptr) {
+        add_image(expected, state.recalled->pixels().subspan(strip.begin, strip.size()));
+        return;
       }
+      state.scratch.resize(strip.size());
+      state.moving.recall(strip, state.scratch);
+      add_image(expected, state.scratch);
       return;
+    }
     case Act::kTakeExpected:
       // Without shot noise a pixel holds what is expected of it.
       std::ranges::copy(state.expectation(strip), state.sampled.pixels(strip).begin());
       return;
+  }
+}
+
+void Simulator::deliver(ExposureState& state) const {
+  if (state.more == nullptr) return;
+  const PixelLayout& delivered = *scene_->layout();
+  for (std::size_t r = 0; r < delivered.regions().size(); ++r) {
+    const Rectangle& region = delivered.regions()[r];
+    const auto first = static_cast<std::size_t>(region.x0 - plan_->layout->regions()[r].x0);
+    for (int y = region.y0; y < region.y1(); ++y) {
+      const auto width = static_cast<std::size_t>(region.nx);
+      std::ranges::copy(state.more->pixels.view(r).row(y).subspan(first, width),
+                        state.frame.pixels.view(r).row(y).begin());
+      std::ranges::copy(state.more->flags.view(r).row(y).subspan(first, width),
+                        state.frame.flags.view(r).row(y).begin());
+    }
   }
 }
 

@@ -4,16 +4,40 @@
 
 namespace astroid {
 
-Strip whole_strip(const PixelLayout& layout) {
+namespace {
+
+Strip strip_of(std::span<const Rectangle> regions) {
   Strip strip;
-  for (const Rectangle& region : layout.regions()) strip.add(region);
+  for (const Rectangle& region : regions) strip.add(region);
   return strip;
+}
+
+}  // namespace
+
+Strip whole_strip(const PixelLayout& layout) {
+  return strip_of(layout.regions());
+}
+
+Strip exposed_strip(const PixelLayout& layout) {
+  return strip_of(layout.exposed_regions());
 }
 
 std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels) {
   std::vector<Strip> strips;
   Strip strip;
+  const auto finish = [&] {
+    Strip next;
+    next.begin = next.end = strip.end;
+    next.exposed = strip.exposed;
+    if (strip.size() > 0) strips.push_back(std::move(strip));
+    strip = std::move(next);
+  };
+  const std::size_t exposed = layout.exposed_regions().size();
   for (std::size_t r = 0; r < layout.regions().size(); ++r) {
+    if (r == exposed) {
+      finish();
+      strip.exposed = false;
+    }
     const Rectangle& region = layout.regions()[r];
     if (region.empty()) continue;
     const auto width = static_cast<std::size_t>(region.nx);
@@ -23,14 +47,10 @@ std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels) {
           static_cast<int>(std::clamp<std::size_t>(room / width, 1, static_cast<std::size_t>(region.y1() - y)));
       strip.add({region.x0, y, region.nx, rows});
       y += rows;
-      if (strip.size() + width <= pixels) continue;
-      const std::size_t next = strip.end;
-      strips.push_back(std::move(strip));
-      strip = {};
-      strip.begin = strip.end = next;
+      if (strip.size() + width > pixels) finish();
     }
   }
-  if (strip.size() > 0) strips.push_back(std::move(strip));
+  finish();
   return strips;
 }
 

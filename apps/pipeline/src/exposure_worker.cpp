@@ -11,7 +11,7 @@ namespace {
 
 /// Takes the mesh background out of a measured frame; written images keep theirs.
 void subtract_mesh(Frame& frame, const PhotometrySettings& settings) {
-  for (std::size_t r = 0; r < frame.pixels.layout().regions().size(); ++r) {
+  for (std::size_t r = 0; r < frame.pixels.layout().exposed_regions().size(); ++r) {
     const BackgroundMap map(frame, r, {.cell = settings.mesh});
     subtract_background(frame, r, map);
   }

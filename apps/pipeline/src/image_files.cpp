@@ -64,14 +64,14 @@ std::vector<FitsCard> place_cards(const Scene& scene, const Rectangle& area) {
 }
 
 bool is_cube(const PixelLayout& layout) {
-  return layout.regions().size() > 1;
+  return layout.exposed_regions().size() > 1;
 }
 
 /// The largest window; smaller ones, cut by the edge, are padded to its size.
 std::pair<int, int> cube_size(const PixelLayout& layout) {
   int nx = 0;
   int ny = 0;
-  for (const Rectangle& region : layout.regions()) {
+  for (const Rectangle& region : layout.exposed_regions()) {
     nx = std::max(nx, region.nx);
     ny = std::max(ny, region.ny);
   }
@@ -84,12 +84,12 @@ void write_windows(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber
                    std::span<const FitsCard> cards, std::span<const std::string> history) {
   const PixelLayout& layout = plane.layout();
   const auto [nx, ny] = cube_size(layout);
-  const auto count = static_cast<std::int64_t>(layout.regions().size());
+  const auto count = static_cast<std::int64_t>(layout.exposed_regions().size());
   fits.begin_image(number, {nx, ny, count});
   fits.cards(cards);
   for (const std::string& line : history) fits.history(line);
   std::vector<Pixel> window;
-  for (std::size_t r = 0; r < layout.regions().size(); ++r) {
+  for (std::size_t r = 0; r < layout.exposed_regions().size(); ++r) {
     const Rectangle& area = layout.regions()[r];
     window.assign(static_cast<std::size_t>(nx) * static_cast<std::size_t>(ny), Pixel{});
     for (int y = area.y0; y < area.y1(); ++y)
@@ -108,7 +108,7 @@ void write_windows(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber
   std::vector<std::int32_t> widths;
   std::vector<std::int32_t> heights;
   constexpr std::size_t kLongestId = 32;
-  for (std::size_t r = 0; r < layout.regions().size(); ++r) {
+  for (std::size_t r = 0; r < layout.exposed_regions().size(); ++r) {
     ids.push_back(scene.stars()[scene.targets()[r]].id.substr(0, kLongestId));
     x0.push_back(layout.regions()[r].x0);
     y0.push_back(layout.regions()[r].y0);
@@ -173,7 +173,7 @@ std::vector<std::string> history_of(const Plan& plan, const Scene& scene) {
 Image<float, unit::Adu> largest_region(const Frame& frame) {
   const PixelLayout& layout = frame.pixels.layout();
   std::size_t largest = 0;
-  for (std::size_t r = 1; r < layout.regions().size(); ++r)
+  for (std::size_t r = 1; r < layout.exposed_regions().size(); ++r)
     if (layout.regions()[r].size() > layout.regions()[largest].size()) largest = r;
   Image<float, unit::Adu> image(layout.regions()[largest]);
   const Rectangle& area = image.area();
@@ -218,7 +218,7 @@ void ImageFiles::write(const Frame& frame) const {
   const std::filesystem::path file = folder / (file_name(frame.header.camera, frame.header.exposure) + ".fits");
   const std::vector<FitsCard> cards = image_cards(scene_, frame.header);
   if (series_) {
-    const std::span<const float> counts(frame.pixels.view(0).data(), frame.pixels.size());
+    const std::span<const float> counts(frame.pixels.view(0).data(), frame.pixels.layout().regions()[0].size());
     series_->write(file, counts, cards, Durability::kWithFolder);
     return;
   }

@@ -17,8 +17,8 @@ EffectNeed Adc::is_needed(const SceneSummary& scene) const {
 
 void Adc::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const double top = adc_top(context.scene.mission().ccd.adc_bits);
-  const std::span<float> digital = state.frame.pixels.pixels().subspan(strip.begin, strip.size());
-  const std::span<std::uint8_t> flags = state.frame.flags.pixels().subspan(strip.begin, strip.size());
+  const std::span<float> digital = state.computed().pixels.pixels().subspan(strip.begin, strip.size());
+  const std::span<std::uint8_t> flags = state.computed().flags.pixels().subspan(strip.begin, strip.size());
   state.clipped_pixels += static_cast<std::int64_t>(digitise_pixels(state.analog.pixels(strip), top, digital, flags));
 }
 

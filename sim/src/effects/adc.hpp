@@ -15,7 +15,10 @@ class Adc final : public Effect {
                                     plane_bit::kDigital | plane_bit::kFlags,
                                     0,
                                     RandomScope::kNone,
-                                    ""};
+                                    "",
+                                    ImageRole::kNone,
+                                    PixelSet::kAll,
+                                    true};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
   void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;

@@ -22,7 +22,7 @@ EffectNeed DarkCurrent::is_needed(const SceneSummary& scene) const {
 void DarkCurrent::prepare(CameraState& camera, const PrepareContext& context) const {
   const double level = dark_electrons(context.scene.mission()).value();
   const double dsnu = context.scene.mission().ccd.dsnu;
-  camera.dark = Plane<float, unit::ExpectedElectrons>(context.scene.layout());
+  camera.dark = Plane<float, unit::ExpectedElectrons>(camera.layout);
   draw_fixed_pattern(context.stream, camera.dark,
                      [&](double normal) { return level * std::max(0.0, 1.0 + dsnu * normal); });
 }

@@ -28,12 +28,14 @@ EffectNeed FullWell::is_needed(const SceneSummary& scene) const {
           std::max(0.0, highest - full_well), needed ? 1.0 : 0.0};
 }
 
+void FullWell::support(const Scene& /*scene*/, std::vector<Rectangle>& /*regions*/) const {}
+
 void FullWell::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const CcdSettings& ccd = context.scene.mission().ccd;
   const double full_well = ccd.full_well.value();
   for (std::size_t r = 0; r < strip.areas.size(); ++r) {
     const auto electrons = state.sampled.view(strip, r);
-    const auto flags = state.frame.flags.view(r);
+    const auto flags = state.computed().flags.view(r);
     state.lost_electrons +=
         ccd.blooming ? bloom(electrons, full_well, &flags) : clip_full_well(electrons, full_well, &flags);
   }

@@ -15,9 +15,14 @@ class FullWell final : public Effect {
                                     plane_bit::kSampled | plane_bit::kFlags,
                                     kWholeColumn,
                                     RandomScope::kNone,
-                                    "Jannsen2024"};
+                                    "Jannsen2024",
+                                    ImageRole::kNone,
+                                    PixelSet::kExposed,
+                                    true};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
+  /// Charge that blooms into computed pixels from outside them is left out, which the plan states.
+  void support(const Scene& scene, std::vector<Rectangle>& regions) const override;
   void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 

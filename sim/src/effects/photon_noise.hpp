@@ -8,8 +8,17 @@ namespace astroid {
 /// Draws the electrons of each pixel from the Poisson distribution of its expectation, by inverting one uniform.
 class PhotonNoise final : public Effect {
  public:
-  static constexpr EffectSpec kSpec{"photon-noise",      StreamId{7}, EffectLevel::kPixelSample, plane_bit::kExpected,
-                                    plane_bit::kSampled, 0,           RandomScope::kPerExposure, "Giles2016"};
+  static constexpr EffectSpec kSpec{"photon-noise",
+                                    StreamId{7},
+                                    EffectLevel::kPixelSample,
+                                    plane_bit::kExpected,
+                                    plane_bit::kSampled,
+                                    0,
+                                    RandomScope::kPerExposure,
+                                    "Giles2016",
+                                    ImageRole::kNone,
+                                    PixelSet::kAll,
+                                    true};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
   void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;

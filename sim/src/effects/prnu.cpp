@@ -27,7 +27,7 @@ EffectNeed Prnu::is_needed(const SceneSummary& scene) const {
 
 void Prnu::prepare(CameraState& camera, const PrepareContext& context) const {
   const double rms = context.scene.mission().ccd.prnu;
-  camera.prnu = Plane<float, unit::Relative>(context.scene.layout());
+  camera.prnu = Plane<float, unit::Relative>(camera.layout);
   draw_fixed_pattern(context.stream, camera.prnu, [&](double normal) { return std::max(0.0, 1.0 + rms * normal); });
 }
 

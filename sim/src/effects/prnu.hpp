@@ -11,7 +11,7 @@ class Prnu final : public Effect {
  public:
   static constexpr EffectSpec kSpec{
       "prnu", StreamId{5},          EffectLevel::kPixelMean, plane_bit::kExpected, plane_bit::kExpected,
-      0,      RandomScope::kStatic, "DeRidder2006"};
+      0,      RandomScope::kStatic, "DeRidder2006",          ImageRole::kResponse};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
   void prepare(CameraState& camera, const PrepareContext& context) const override;

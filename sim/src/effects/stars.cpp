@@ -51,31 +51,32 @@ void Stars::prepare(CameraState& camera, const PrepareContext& context) const {
 void Stars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const PixelPsf& psf = context.scene.psf();
   const JitterTreatment jitter = context.knobs.jitter;
+  const Conditions& conditions = state.conditions;
   const auto steps = static_cast<double>(state.attitude_steps.size());
-  // One strip, as a rule; all of them where the whole frame is made at once.
   const std::span<const Strip> strips = context.camera.strips;
-  auto part = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin);
-  for (; part != strips.end() && part->begin < strip.end; ++part) {
-    const auto& lists = context.camera.stars[static_cast<std::size_t>(part - strips.begin())];
-    for (std::size_t a = 0; a < lists.size(); ++a) {
-      const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(*part, a);
-      for (const RenderedStar& star : lists[a]) {
-        StarLight light{.centre = {}, .electrons = star.electrons, .half_width = star.half_width};
-        if (jitter == JitterTreatment::kSubSteps) {
-          light.electrons /= steps;
-          for (const Attitude& attitude : state.attitude_steps) {
-            light.centre = displaced(star, attitude);
-            psf.add_star(light, view, state.scratch);
-          }
-          continue;
+  const auto number = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin) - strips.begin();
+  const auto& lists = context.camera.stars[static_cast<std::size_t>(number)];
+  for (std::size_t a = 0; a < lists.size(); ++a) {
+    const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(strip, a);
+    for (const RenderedStar& star : lists[a]) {
+      StarLight light{.centre = {}, .electrons = star.electrons * conditions.throughput, .half_width = star.half_width};
+      light.motion = {.sxx = conditions.psf_variance, .sxy = 0.0, .syy = conditions.psf_variance};
+      light.broadened = conditions.psf_variance > 0.0;
+      if (jitter == JitterTreatment::kSubSteps) {
+        light.electrons /= steps;
+        for (const Attitude& attitude : state.attitude_steps) {
+          light.centre = displaced(star, attitude);
+          psf.add_star(light, view, state.scratch);
         }
-        light.centre = displaced(star, state.attitude.mean);
-        if (jitter == JitterTreatment::kBroadened) {
-          light.motion = motion_covariance(star.motion, state.attitude.covariance);
-          light.broadened = true;
-        }
-        psf.add_star(light, view, state.scratch);
+        continue;
       }
+      light.centre = displaced(star, state.attitude.mean);
+      if (jitter == JitterTreatment::kBroadened) {
+        const MotionCovariance motion = motion_covariance(star.motion, state.attitude.covariance);
+        light.motion = {light.motion.sxx + motion.sxx, motion.sxy, light.motion.syy + motion.syy};
+        light.broadened = true;
+      }
+      psf.add_star(light, view, state.scratch);
     }
   }
 }

@@ -102,16 +102,23 @@ class Image {
   std::vector<T> pixels_;
 };
 
-/// Which pixels of a detector are computed: the full frame, one sub-field, or one window per target.
+/// Which pixels of a detector are computed: the full frame, one sub-field, or one window per target, and the reference
+/// pixels (prescan, overscan) that are read with them.
 /// The pixels of all regions lie one after the other in one buffer; `offset(r)` is where region r begins.
 class PixelLayout {
  public:
-  explicit PixelLayout(std::vector<Rectangle> regions) : regions_(std::move(regions)) {
+  /// @param exposed    regions of light-sensitive pixels, which come first.
+  /// @param reference  regions of reference pixels: columns below 0 or beyond the last, rows beyond the last.
+  explicit PixelLayout(std::vector<Rectangle> exposed, const std::vector<Rectangle>& reference = {})
+      : regions_(std::move(exposed)), exposed_(regions_.size()) {
+    regions_.insert(regions_.end(), reference.begin(), reference.end());
     offsets_.reserve(regions_.size() + 1);
     offsets_.push_back(0);
     for (const Rectangle& region : regions_) offsets_.push_back(offsets_.back() + region.size());
   }
   [[nodiscard]] std::span<const Rectangle> regions() const { return regions_; }
+  [[nodiscard]] std::span<const Rectangle> exposed_regions() const { return std::span(regions_).first(exposed_); }
+  [[nodiscard]] std::span<const Rectangle> reference_regions() const { return std::span(regions_).subspan(exposed_); }
   [[nodiscard]] std::size_t offset(std::size_t region) const { return offsets_[region]; }
   [[nodiscard]] std::size_t size() const { return offsets_.back(); }
   /// Index in the buffer of pixel (x, y) of region r, which must contain it.
@@ -123,6 +130,7 @@ class PixelLayout {
 
  private:
   std::vector<Rectangle> regions_;
+  std::size_t exposed_;
   std::vector<std::size_t> offsets_;
 };
 

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -11,6 +13,7 @@
 #include "astroid/core/frame.hpp"
 #include "astroid/core/random.hpp"
 #include "astroid/sim/attitude.hpp"
+#include "astroid/sim/conditions.hpp"
 #include "astroid/sim/moving_image.hpp"
 #include "astroid/sim/scene_summary.hpp"
 #include "astroid/sim/strip.hpp"
@@ -49,6 +52,22 @@ enum class RandomScope : std::uint8_t { kNone, kStatic, kPerExposure };
 /// `halo_px` of an effect that needs a whole column or frame.
 inline constexpr int kWholeColumn = -1;
 
+/// Which pixels an effect changes.
+enum class PixelSet : std::uint8_t {
+  kExposed,  ///< those that light falls on
+  kAll,      ///< reference pixels too
+};
+
+/// What an effect up to PixelMean does to the expected image. The noiseless image is recalled where nothing or little
+/// moves; light that differs from exposure to exposure is then rendered alone, taken through the responses, and added.
+enum class ImageRole : std::uint8_t {
+  kNone,          ///< makes no image
+  kLight,         ///< adds light, which changes through the attitude and the conditions only
+  kVaryingLight,  ///< adds light that differs from exposure to exposure
+  kResponse,      ///< multiplies or moves light, linearly, the same in every exposure
+  kOffset,        ///< adds what is not light, the same in every exposure
+};
+
 /// An effect's data about itself.
 struct EffectSpec {
   std::string_view name;
@@ -59,6 +78,9 @@ struct EffectSpec {
   int halo_px;           ///< how far a pixel's result depends on other pixels; kWholeColumn: on all of them
   RandomScope random;
   std::string_view source;  ///< key in docs/references.bib, empty where the formula is elementary
+  ImageRole role = ImageRole::kNone;
+  PixelSet pixels = PixelSet::kExposed;
+  bool per_read = false;  ///< runs once for every non-destructive read of an exposure
 };
 
 /// Whether an effect is needed, why, and what skipping it would cost.
@@ -68,6 +90,8 @@ struct EffectNeed {
   double bias_bound = 0.0;  ///< e- per exposure on any target's flux, if skipped
   double variance_bound =
       0.0;  ///< of any target's flux at the longest reported time bin with all cameras, relative to its variance
+  /// How long the conditions it sets may be taken as constant without moving a flux beyond its tolerance.
+  Seconds steady{std::numeric_limits<double>::infinity()};
 };
 
 /// What rendering a star takes.
@@ -81,6 +105,7 @@ struct RenderedStar {
 /// What happens to one camera that does not change from exposure to exposure; built once, then only read.
 struct CameraState {
   int camera = 0;
+  std::shared_ptr<const PixelLayout> layout;                  ///< the computed pixels
   std::vector<Strip> strips;                                  ///< of the layout
   std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][area]: those that may reach it
   Plane<float, unit::Relative> prnu;                          ///< pixel response, mean 1; empty when the effect is off
@@ -91,23 +116,30 @@ struct CameraState {
 struct ExposureState {
   int camera = 0;
   std::int64_t exposure = 0;
+  int read = 0;                              ///< non-destructive read at work, from 0
+  Conditions conditions;                     ///< that change slowly
   AttitudeMoments attitude;                  ///< of the exposure; zero when nothing moves
   std::span<const Attitude> attitude_steps;  ///< of the exposure, where the plan wants them
   MovingImage::Exposure moving;              ///< its noiseless image, where that is recalled from fixed maps
-  const Plane<double, unit::ExpectedElectrons>* still = nullptr;  ///< its noiseless image, where that never changes
+  std::shared_ptr<const Plane<double, unit::ExpectedElectrons>> recalled;  ///< the same, where exposures share it
+  bool still = false;                                                      ///< whether nothing is added to that
   StripPlane<double, unit::ExpectedElectrons> expected;
   StripPlane<double, unit::SampledElectrons> sampled;
   StripPlane<double, unit::Adu> analog;
-  Frame frame;
+  Frame frame;                         ///< the delivered pixels
+  std::unique_ptr<Frame> more;         ///< the computed pixels, where they are more than the delivered ones
   double lost_electrons = 0.0;         ///< charge that left through the edge of the frame or was clipped
   std::int64_t clipped_pixels = 0;     ///< by the ADC
   std::vector<double> effect_seconds;  ///< wall time of each effect of the plan, over all exposures this state has seen
   std::vector<double> scratch;         ///< of the renderer; its content means nothing between calls
 
+  /// Digital numbers and flags of the computed pixels: what effects write.
+  [[nodiscard]] Frame& computed() { return more != nullptr ? *more : frame; }
+
   /// The expected electrons that draws are made from: of the image that never changes, which is read where it lies, or
   /// of this exposure.
   [[nodiscard]] std::span<const double> expectation(const Strip& strip) {
-    return still != nullptr ? still->pixels().subspan(strip.begin, strip.size()) : expected.pixels(strip);
+    return still ? recalled->pixels().subspan(strip.begin, strip.size()) : expected.pixels(strip);
   }
 };
 
@@ -146,9 +178,14 @@ class Effect {
   [[nodiscard]] virtual const EffectSpec& spec() const = 0;
   /// Decides from full-frame numbers of the scene, so windows and variants of one scene share the decision.
   [[nodiscard]] virtual EffectNeed is_needed(const SceneSummary& scene) const = 0;
+  /// Enters what it does to the slow conditions at a time since the start. The default does nothing.
+  virtual void set_conditions(const Scene& scene, Seconds time, Conditions& conditions) const;
   /// Draws what is fixed for a camera (scope `static`). The default has nothing to draw.
   virtual void prepare(CameraState& camera, const PrepareContext& context) const;
-  /// Changes the pixels of one strip of an exposure, which is all of them where the effect is not local.
+  /// Replaces regions of pixels after this effect by those before it on which they depend, so that what is computed
+  /// for a window is what the full frame has. The default grows each by `halo_px` (kWholeColumn: to whole columns).
+  virtual void support(const Scene& scene, std::vector<Rectangle>& regions) const;
+  /// Changes the pixels of one strip of an exposure, which is all of its pixel set where the effect is not local.
   /// @thread safe for different states.
   virtual void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const = 0;
 };

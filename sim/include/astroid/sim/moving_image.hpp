@@ -5,14 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <map>
 #include <memory>
-#include <mutex>
 #include <span>
 #include <vector>
 
 #include "astroid/core/image.hpp"
 #include "astroid/sim/attitude_polynomial.hpp"
+#include "astroid/sim/recent_images.hpp"
 #include "astroid/sim/strip.hpp"
 
 namespace astroid {
@@ -42,20 +41,24 @@ class MovingImage {
     /// The pixels of a strip.
     void recall(const Strip& strip, std::span<double> expected) const;
   };
+  /// @param epoch    of the slow conditions that `render` renders with.
   /// @param mean     attitude of the exposure, which decides the cell.
   /// @param weights  of exposure_weights().
   /// @param render   makes the images of a cell that is not at hand.
-  [[nodiscard]] Exposure exposure(const Attitude& mean, std::span<const float> weights, const RenderAt& render) const;
+  [[nodiscard]] Exposure exposure(std::int64_t epoch, const Attitude& mean, std::span<const float> weights,
+                                  const RenderAt& render) const;
 
  private:
-  [[nodiscard]] std::shared_ptr<const MovingImageCell> cell(const Attitude& centre, const RenderAt& render) const;
-  [[nodiscard]] std::shared_ptr<const MovingImageCell> make_cell(const Attitude& centre, const RenderAt& render) const;
+  struct Key {
+    std::int64_t epoch;
+    std::array<double, 3> centre;
+    friend bool operator==(const Key&, const Key&) = default;
+  };
+  [[nodiscard]] MovingImageCell make_cell(const Attitude& centre, const RenderAt& render) const;
 
   AttitudePolynomial polynomial_;
   std::vector<double> inverse_;
-  mutable std::mutex mutex_;
-  mutable std::map<std::array<double, 3>, std::shared_ptr<const MovingImageCell>> cells_;
-  mutable std::vector<std::array<double, 3>> age_;  // of cells_, the oldest first
+  RecentImages<Key, MovingImageCell> cells_;
 };
 
 }  // namespace astroid

@@ -55,10 +55,13 @@ struct AccuracyShares {
 struct Plan {
   std::vector<PlannedEffect> effects;  ///< every effect of the table, on or off
   PlanKnobs knobs;
-  std::string renderer;      ///< analytic or prf
-  std::string pixels;        ///< full frame, sub-field or windows, and what is exact
-  bool still = false;        ///< the noiseless image is the same in every exposure
-  double stamp_error = 0.0;  ///< bound of the error by truncation, e- per exposure on any target
+  std::string renderer;                       ///< analytic or prf
+  std::string pixels;                         ///< full frame, sub-field or windows, and what is exact
+  std::shared_ptr<const PixelLayout> layout;  ///< the computed pixels: region r holds the scene's region r, and more
+  bool still = false;                         ///< exposures share a noiseless image
+  std::int64_t epoch_exposures = 0;           ///< exposures that share the slow conditions; 0: all of them
+  int reads = 1;                              ///< non-destructive reads of an exposure
+  double stamp_error = 0.0;                   ///< bound of the error by truncation, e- per exposure on any target
   double jitter_error = 0.0;
   double psf_error = 0.0;
   double tolerance = 0.0;             ///< the tightest of any target, e- per exposure
@@ -67,7 +70,14 @@ struct Plan {
   std::vector<std::string> approximations;
 
   [[nodiscard]] bool runs(std::string_view effect) const;
+  /// Number of the epoch that an exposure belongs to.
+  [[nodiscard]] std::int64_t epoch(std::int64_t exposure) const {
+    return epoch_exposures > 0 ? exposure / epoch_exposures : 0;
+  }
 };
+
+/// What the effects that run make of the conditions in an epoch, taken at its middle.
+Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch);
 
 /// Decides everything from the scene and the accuracy asked for.
 Plan make_plan(const Scene& scene);

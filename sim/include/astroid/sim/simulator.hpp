@@ -9,6 +9,7 @@
 #include "astroid/sim/effect.hpp"
 #include "astroid/sim/moving_image.hpp"
 #include "astroid/sim/plan.hpp"
+#include "astroid/sim/recent_images.hpp"
 #include "astroid/sim/scene.hpp"
 
 namespace astroid {
@@ -23,7 +24,8 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
 ///
 /// Effects that work on each pixel alone run strip by strip, all of them on one strip before the next, so what they
 /// hand on stays in the cache. Effects that need more than a pixel see the whole frame. A noiseless image that does not
-/// change, or changes little, is computed once and recalled.
+/// change, or changes little, is computed once and recalled; light that differs from exposure to exposure is added.
+/// Where effects reach beyond the delivered pixels, those that they depend on are computed too and left out at the end.
 class Simulator {
  public:
   /// Draws what is fixed for the camera and computes what does not change. @param camera  0-based
@@ -48,6 +50,7 @@ class Simulator {
   void expect(std::int64_t exposure, ExposureState& state) const;
 
  private:
+  using StillImages = RecentImages<std::int64_t, Plane<double, unit::ExpectedElectrons>>;
   /// The noiseless image.
   enum class Source : std::uint8_t {
     kRender,  ///< effect by effect
@@ -57,6 +60,7 @@ class Simulator {
     kApply,         ///< an effect
     kClear,         ///< no light yet
     kRecall,        ///< the noiseless image
+    kAddRecalled,   ///< to the light that varies
     kTakeExpected,  ///< as drawn electrons, where photon noise is off
   };
   struct Step {
@@ -66,15 +70,23 @@ class Simulator {
   /// Steps that run one after the other on each strip, or on the whole frame.
   struct Stage {
     bool local;
+    bool per_read;
     std::vector<Step> steps;
   };
 
   [[nodiscard]] std::vector<Stage> make_stages(Source source, bool until_expected) const;
+  [[nodiscard]] std::vector<Step> expected_steps(Source source) const;
   [[nodiscard]] Source source() const;
+  [[nodiscard]] bool varies() const;
   void begin(std::int64_t exposure, ExposureState& state) const;
   void run(const std::vector<Stage>& stages, ExposureState& state, const StepObserver& observer = {}) const;
+  void run(const Stage& stage, ExposureState& state, const StepObserver& observer) const;
   void take(const Step& step, ExposureState& state, const Strip& strip) const;
-  [[nodiscard]] Plane<double, unit::ExpectedElectrons> render(const Attitude& attitude) const;
+  [[nodiscard]] const Strip& exposed_or_whole(const Step& step) const;
+  [[nodiscard]] bool is_for(const Step& step, const Strip& strip) const;
+  void deliver(ExposureState& state) const;
+  [[nodiscard]] Plane<double, unit::ExpectedElectrons> render(const Attitude& attitude,
+                                                              const Conditions& conditions) const;
 
   std::shared_ptr<const Scene> scene_;
   std::shared_ptr<const Plan> plan_;
@@ -82,10 +94,11 @@ class Simulator {
   std::vector<RandomStream> streams_;  // of plan().effects
   std::shared_ptr<const AttitudeSeries> attitude_;
   Strip whole_;
+  Strip exposed_;
   std::size_t longest_strip_ = 0;
-  Plane<double, unit::ExpectedElectrons> still_;  // the noiseless image, if nothing changes
-  std::shared_ptr<const MovingImage> moving_;     // if little does
-  std::vector<Stage> stages_;                     // of an exposure
+  std::shared_ptr<const StillImages> still_;   // the noiseless images, if nothing moves, one for each epoch
+  std::shared_ptr<const MovingImage> moving_;  // if little does
+  std::vector<Stage> stages_;                  // of an exposure
 };
 
 }  // namespace astroid

@@ -17,6 +17,7 @@ struct Strip {
   std::size_t end = 0;
   std::vector<Rectangle> areas;          ///< whole rows of one region each
   std::vector<std::size_t> area_begins;  ///< where each begins in the buffer of the layout
+  bool exposed = true;                   ///< to light; reference pixels lie in strips of their own
   [[nodiscard]] std::size_t size() const { return end - begin; }
   void add(const Rectangle& area) {
     areas.push_back(area);
@@ -25,8 +26,10 @@ struct Strip {
   }
 };
 
-/// All pixels in one strip; its areas are the regions.
+/// All pixels in one strip; its areas are the regions, the exposed ones first.
 Strip whole_strip(const PixelLayout& layout);
+/// All pixels that light falls on.
+Strip exposed_strip(const PixelLayout& layout);
 
 /// Pixels of a strip of an exposure: its planes of doubles, 128 KiB each, stay in a second-level cache together.
 inline constexpr std::size_t kStripPixels = 16384;

@@ -91,6 +91,7 @@ TEST(ParameterTable, BindsEveryParameterToTheMission) {
     other.integer = 3;
     other.text = "other";
     other.integers = {3};
+    other.reals = {0.123};
     for (const std::size_t choice : {0U, 1U}) {
       other.choice = choice;
       other.flag = choice == 1;

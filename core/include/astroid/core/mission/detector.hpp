@@ -1,0 +1,159 @@
+// The detector: what CCD and CMOS share, and what each has alone.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "astroid/core/units.hpp"
+
+namespace astroid {
+
+enum class SmearingModel { kNone, kOpenShutter, kFrameTransfer };
+enum class CtiModel { kNone, kSimple, kTraps };
+
+/// Pixels read beyond the light-sensitive ones.
+struct ReferencePixels {
+  int prescan = 0;            ///< columns before the first one
+  int serial_overscan = 0;    ///< columns after the last one
+  int parallel_overscan = 0;  ///< rows after the last one
+
+  friend bool operator==(const ReferencePixels&, const ReferencePixels&) = default;
+};
+
+/// Light that falls on the pixels while charge is moved.
+struct SmearingSettings {
+  SmearingModel model = SmearingModel::kNone;
+  Seconds time{4.019};  ///< of moving a whole frame past the light
+
+  friend bool operator==(const SmearingSettings&, const SmearingSettings&) = default;
+};
+
+/// A pattern of sensitivity with a power-law spatial spectrum.
+struct FlatFieldSettings {
+  double rms = 0.0;       ///< relative; 0: none
+  double exponent = 1.0;  ///< of the power spectrum, f^-exponent in each direction of frequency space
+
+  friend bool operator==(const FlatFieldSettings&, const FlatFieldSettings&) = default;
+};
+
+/// Lines of charge injected into every nth row.
+struct ChargeInjectionSettings {
+  int every_rows = 0;  ///< 0: none
+  Electrons level{0.0};
+
+  friend bool operator==(const ChargeInjectionSettings&, const ChargeInjectionSettings&) = default;
+};
+
+struct CosmicRaySettings {
+  double rate = 0.0;                          ///< hits per cm² and second; 0: none
+  double pixel_size = 18.0;                   ///< micrometres
+  Pixels longest_track{15.0};                 ///< projected lengths are uniform from 0
+  Electrons location{2500.0}, scale{2000.0};  ///< of the skew-normal distribution of their charge
+  double shape = 30.0;
+
+  friend bool operator==(const CosmicRaySettings&, const CosmicRaySettings&) = default;
+};
+
+struct BrighterFatterSettings {
+  double area_change = 0.0;  ///< relative loss of a pixel's area per electron in it (a_00, negative in the literature)
+  double range = 2.0;        ///< pixels
+
+  friend bool operator==(const BrighterFatterSettings&, const BrighterFatterSettings&) = default;
+};
+
+/// Charge-transfer inefficiency.
+struct CtiSettings {
+  CtiModel model = CtiModel::kNone;
+  double parallel = 0.0;                   ///< charge lost per transfer between rows (simple model)
+  double serial = 0.0;                     ///< and between columns
+  double beta = 0.37;                      ///< exponent of the volume of a charge cloud (trap model)
+  double temperature = 203.0;              ///< K
+  Seconds row_time{0.0007718};             ///< time that charge stays in one row
+  std::vector<double> trap_density;        ///< per pixel, one for each species
+  std::vector<double> trap_cross_section;  ///< m²
+  std::vector<double> release_time;        ///< s
+
+  friend bool operator==(const CtiSettings&, const CtiSettings&) = default;
+};
+
+/// One amplifier and its electronics read a part of the columns.
+struct NodeSettings {
+  int count = 1;                     ///< 1, 2 or 4
+  std::vector<double> gain_factor;   ///< of each, relative to the gain
+  std::vector<double> noise_factor;  ///< of each, relative to the readout noise
+  double cross_talk = 0.0;           ///< of one node's signal into the others
+
+  friend bool operator==(const NodeSettings&, const NodeSettings&) = default;
+};
+
+struct ElectronicsSettings {
+  std::vector<double> nonlinearity;  ///< a0, a1, a2 of ADU' = ADU + a0 + a1 ADU + a2 ADU²
+  double gain_drift = 0.0;           ///< relative, amplitude over one period
+  double bias_drift = 0.0;           ///< ADU, amplitude over one period
+  Seconds drift_period{86400.0};
+  double row_offset = 0.0;  ///< ADU rms, of each row of each exposure
+
+  friend bool operator==(const ElectronicsSettings&, const ElectronicsSettings&) = default;
+};
+
+/// Pixels that do not work.
+struct BadPixelSettings {
+  double dead = 0.0;  ///< fraction that sees no light
+  double hot = 0.0;   ///< fraction with a large dark current
+  ElectronsPerSecond hot_current{1000.0};
+
+  friend bool operator==(const BadPixelSettings&, const BadPixelSettings&) = default;
+};
+
+struct CcdSettings {
+  int columns = 0, rows = 0;
+  PixelScale pixel_scale{15.0};
+  std::string projection = "TAN";     ///< a zenithal projection of FITS WCS
+  double axis_x = 0.0, axis_y = 0.0;  ///< pixel where the optical axis falls; default the centre
+  bool has_sub_field = false;
+  int sub_x0 = 0, sub_y0 = 0, sub_columns = 0, sub_rows = 0;
+  int window = 0;  ///< side of the window around each target, px; 0: no windows
+  Electrons full_well{900000.0};
+  bool blooming = true;
+  ElectronsPerSecond dark_current{0.0};  ///< per pixel
+  double dsnu = 0.0;                     ///< rms relative to the dark current
+  double prnu = 0.0;                     ///< rms relative
+  Electrons readout_noise{0.0};
+  Gain gain{1.0};
+  Adu bias{0.0};
+  int adc_bits = 16;
+  ReferencePixels reference;
+  SmearingSettings smearing;
+  FlatFieldSettings flat_field;
+  ChargeInjectionSettings charge_injection;
+  CosmicRaySettings cosmic_rays;
+  BrighterFatterSettings brighter_fatter;
+  CtiSettings cti;
+  NodeSettings nodes;
+  ElectronicsSettings electronics;
+  BadPixelSettings bad_pixels;
+
+  friend bool operator==(const CcdSettings&, const CcdSettings&) = default;
+};
+
+/// What only a CMOS detector has; CcdSettings holds the rest.
+struct CmosSettings {
+  int reads = 1;                    ///< non-destructive reads of an exposure, evenly spaced, the last at its end
+  Electrons reset_noise{0.0};       ///< kTC, rms
+  double gain_rms = 0.0;            ///< of the pixels' gain, relative
+  Adu offset_rms{0.0};              ///< of the pixels' offset
+  double noise_rms = 0.0;           ///< of the pixels' readout noise, relative (log-normal)
+  double coupling = 0.0;            ///< inter-pixel capacitance: share of each of the four neighbours
+  Electrons column_noise{0.0};      ///< rms, of each column of each read
+  Electrons row_noise{0.0};         ///< rms, of each row of each read
+  double telegraph_fraction = 0.0;  ///< of the pixels
+  Electrons telegraph_amplitude{0.0};
+  Seconds telegraph_time{10.0};     ///< mean time in each state
+  double persistence = 0.0;         ///< share of an exposure's charge that is left to the next ones
+  Seconds persistence_time{100.0};  ///< in which it decays
+  Seconds line_time{0.0};           ///< of the rolling shutter, from row to row; 0: global shutter
+
+  friend bool operator==(const CmosSettings&, const CmosSettings&) = default;
+};
+
+}  // namespace astroid

@@ -1,0 +1,67 @@
+// The cameras and their optics, without the PSF.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "astroid/core/units.hpp"
+
+namespace astroid {
+
+enum class DistortionModel { kNone, kRadial, kSip };
+enum class VignettingModel { kNone, kCosineSquared, kPolynomial };
+
+/// Departure of the optics from the projection.
+struct DistortionSettings {
+  DistortionModel model = DistortionModel::kNone;
+  std::vector<double> radial;  ///< k1, k2, k3 of r' = r (1 + k1 r² + k2 r⁴ + k3 r⁶), r = tan of the field angle
+  std::vector<double> tangential;  ///< p1, p2
+  std::string file;                ///< absolute path; SIP coefficients as a FITS header
+
+  friend bool operator==(const DistortionSettings&, const DistortionSettings&) = default;
+};
+
+/// Light lost towards the edge of the field, relative to the axis.
+struct VignettingSettings {
+  VignettingModel model = VignettingModel::kNone;
+  std::vector<double> polynomial;  ///< percent lost: coefficients of x², x⁴, x⁶, x the field angle in degrees
+
+  friend bool operator==(const VignettingSettings&, const VignettingSettings&) = default;
+};
+
+/// Images of bright stars by reflection, on the other side of the optical axis.
+struct GhostSettings {
+  double fraction = 0.0;         ///< of the star's light; 0: none
+  Pixels radius{50.0};           ///< of the disc
+  Magnitude brighter_than{8.0};  ///< stars that have one
+
+  friend bool operator==(const GhostSettings&, const GhostSettings&) = default;
+};
+
+/// Cameras that share an optical axis.
+struct CameraGroup {
+  std::string name;
+  int cameras = 1;
+  Degrees tilt, azimuth;  ///< of its axis from the spacecraft's, and in which direction from +x
+  Seconds start_offset;   ///< of its exposures within the cycle
+
+  friend bool operator==(const CameraGroup&, const CameraGroup&) = default;
+};
+
+struct TelescopeSettings {
+  Magnitude zero_point{20.62};  ///< magnitude that gives one detected electron per second
+  std::string zero_point_passband = "P";
+  int cameras = 24;                     ///< that observe the field
+  int simulated_cameras = 1;            ///< n <= cameras; independent terms are scaled to `cameras`
+  double throughput = 1.0;              ///< relative to what the zero point includes, at the beginning of life
+  double end_of_life_throughput = 1.0;  ///< the same after `lifetime_years`; linear between
+  double lifetime_years = 6.5;
+  DistortionSettings distortion;
+  VignettingSettings vignetting;
+  GhostSettings ghosts;
+  std::vector<CameraGroup> groups;
+
+  friend bool operator==(const TelescopeSettings&, const TelescopeSettings&) = default;
+};
+
+}  // namespace astroid
