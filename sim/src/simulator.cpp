@@ -230,6 +230,13 @@ void Simulator::expect(std::int64_t exposure, ExposureState& state) const {
   state.still = false;
 }
 
+void Simulator::apply_alone(std::size_t effect, std::int64_t exposure, ExposureState& state) const {
+  begin(exposure, state);
+  state.still = false;
+  run({{.local = is_local(plan_->effects[effect].effect->spec()), .per_read = false, .steps = {{Act::kApply, effect}}}},
+      state);
+}
+
 Plane<double, unit::ExpectedElectrons> Simulator::render(const Attitude& attitude, const Conditions& conditions) const {
   ExposureState state;
   state.expected = {plan_->layout, longest_strip_};

@@ -49,6 +49,10 @@ class Simulator {
   /// simulate() draws from.
   void expect(std::int64_t exposure, ExposureState& state) const;
 
+  /// Applies one effect of the plan to the planes of a state as they are, on all computed pixels: for tests of what an
+  /// effect alone does.  @param state  with whole planes
+  void apply_alone(std::size_t effect, std::int64_t exposure, ExposureState& state) const;
+
  private:
   using StillImages = RecentImages<std::int64_t, Plane<double, unit::ExpectedElectrons>>;
   /// The noiseless image.
