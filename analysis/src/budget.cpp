@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/throughput.hpp"
 
 namespace astroid {
 
@@ -19,7 +20,8 @@ double saturation_electrons(const CcdSettings& ccd) {
 }  // namespace
 
 PixelNoise expected_pixel_noise(const Mission& mission) {
-  const ElectronsPerSecond rate = mission.field.sky_background + mission.ccd.dark_current;
+  const ElectronsPerSecond rate =
+      mean_throughput(mission) * mission.field.sky_background + mission.ccd.dark_current;
   constexpr double kUniformVariance = 12.0;  // of a rounding error, 1/12
   return {(rate * mission.simulation.exposure_time).value(), mission.ccd.readout_noise.value(),
           mission.ccd.gain.value() / std::sqrt(kUniformVariance)};
@@ -57,6 +59,7 @@ std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& p
     BudgetRow row;
     row.mag = magnitude;
     row.electrons =
+        mean_throughput(mission) *
         (electron_rate(Magnitude(magnitude), mission.telescope.zero_point) * mission.simulation.exposure_time).value();
     row.peak_electrons = row.electrons * peak;
     row.saturated = row.peak_electrons + background >= saturation_electrons(mission.ccd);

@@ -94,6 +94,7 @@ std::string join_path(std::string_view parent, std::string_view name);
 std::vector<Parameter> simulation_parameters();
 std::vector<Parameter> satellite_parameters();
 std::vector<Parameter> telescope_parameters();
+std::vector<Parameter> optics_parameters();
 std::vector<Parameter> psf_parameters();
 std::vector<Parameter> stellar_field_parameters();
 std::vector<Parameter> ccd_parameters();

@@ -19,7 +19,12 @@ constexpr std::array kSections = {
     Section{"Satellite/Pointing", "Direction of the optical axis, ICRS."},
     Section{"Satellite/Jitter", "Attitude noise, shared by all cameras."},
     Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
+    Section{"Telescope/Ageing", "How the optics lose throughput over the years."},
+    Section{"Telescope/Distortion", "How positions depart from those of a perfect camera."},
+    Section{"Telescope/Vignetting", "How stars, sky and stray light fade away from the optical axis."},
+    Section{"Telescope/Ghosts", "Reflections of bright stars, on the other side of the optical axis."},
     Section{"PSF", "The image of a star."},
+    Section{"PSF/Breathing", "How the width of the PSF follows the temperature."},
     Section{"StellarField", "The stars and the sky behind them."},
     Section{"CCD", "The detector and its electronics."},
     Section{"CCD/OpticalAxis",
@@ -35,7 +40,7 @@ constexpr std::array kSections = {
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part :
-       {simulation_parameters, satellite_parameters, telescope_parameters, psf_parameters, stellar_field_parameters,
+       {simulation_parameters, satellite_parameters, telescope_parameters, optics_parameters, psf_parameters, stellar_field_parameters,
         ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }

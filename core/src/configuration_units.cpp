@@ -17,6 +17,8 @@ constexpr std::array kConversions = {
     UnitConversion{"s", "min", 60, 1},
     UnitConversion{"s", "h", 3600, 1},
     UnitConversion{"s", "d", 86400, 1},
+    UnitConversion{"yr", "yr", 1, 1},
+    UnitConversion{"yr", "d", 4, 1461},
     UnitConversion{"deg", "deg", 1, 1},
     UnitConversion{"deg", "rad", 180, std::numbers::pi},
     UnitConversion{"deg", "arcmin", 1, 60},

@@ -67,6 +67,7 @@ StarEstimatorBuilder::StarEstimatorBuilder(const PixelLayout& layout, const Grou
     : layout_(layout),
       model_(model),
       settings_(settings),
+      noise_(model.noise),
       stamps_(star_stamps(model, settings)),
       regions_(layout.regions()),
       fits_psf_(settings.method == PhotometryMethod::kPsf) {
@@ -160,14 +161,14 @@ bool StarEstimatorBuilder::choose_weights(const FieldStar& star, const Rectangle
       aperture_overlap(star.position, settings_.aperture_radius.value(), window, weights_);
       return true;
     case PhotometryMethod::kMask: {
-      const std::vector<std::size_t> mask = optimal_binary_mask(target_, total_, model_.noise);
+      const std::vector<std::size_t> mask = optimal_binary_mask(target_, total_, noise_);
       for (const std::size_t pixel : mask) weights_[pixel] = 1.0;
       return !mask.empty();
     }
     case PhotometryMethod::kWeighted: {
       double sum = 0.0;
       for (std::size_t i = 0; i < weights_.size(); ++i) {
-        const double variance = total_[i] + model_.noise.variance();
+        const double variance = total_[i] + noise_.variance();
         weights_[i] = target_[i] > 0.0 ? target_[i] / variance : 0.0;
         sum += weights_[i];
       }
@@ -220,7 +221,7 @@ void StarEstimatorBuilder::cut_at_edges(const FieldStar& star, const Rectangle& 
 }
 
 void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& estimator) {
-  const PixelNoise& noise = model_.noise;
+  const PixelNoise& noise = noise_;
   const double electrons = model_.stars[estimator.star].electrons;
   EstimatorBudget& budget = estimator.budget;
   double squares = 0.0;
@@ -251,7 +252,7 @@ void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& e
 void StarEstimatorBuilder::add_background(const FieldStar& star, const Rectangle& window, StarEstimator& estimator) {
   double weight_sum = 0.0;
   for (const EstimatorTerm& term : estimator.terms) weight_sum += static_cast<double>(term.weight);
-  estimator.known_background = model_.noise.background * weight_sum + estimator.offset;
+  estimator.known_background = noise_.background * weight_sum + estimator.offset;
   switch (settings_.background) {
     case BackgroundMethod::kMesh:
       estimator.known_background = 0.0;
@@ -306,7 +307,7 @@ void StarEstimatorBuilder::choose_annulus(const FieldStar& star, const Rectangle
   const std::span<const double> light = light_.pixels();
   std::stable_sort(found_.begin(), found_.end(), [light](std::size_t a, std::size_t b) { return light[a] < light[b]; });
   // From the darkest pixel on, take as many as make the mean best: noise falls, doubt of the star light rises.
-  const double noise_variance = model_.noise.variance();
+  const double noise_variance = noise_.variance();
   double star_light = 0.0;
   double best_error = std::numeric_limits<double>::infinity();
   std::size_t best_count = 0;
@@ -335,7 +336,7 @@ void StarEstimatorBuilder::add_local_background(double weight_sum, StarEstimator
   for (const std::size_t pixel : found_) estimator.terms.push_back({static_cast<std::uint32_t>(pixel), weight});
   estimator.offset += -weight_sum * annulus_.star_light / count;
   estimator.budget.var_background_estimate =
-      (weight_sum / count) * (weight_sum / count) * (count * model_.noise.variance() + annulus_.star_light);
+      (weight_sum / count) * (weight_sum / count) * (count * noise_.variance() + annulus_.star_light);
 }
 
 void StarEstimatorBuilder::differentiate(std::size_t star, const Rectangle& box,

@@ -3,9 +3,11 @@
 #include "astroid/sim/effect_table.hpp"
 #include "effects/adc.hpp"
 #include "effects/bias.hpp"
+#include "effects/breathing.hpp"
 #include "effects/dark_current.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
+#include "effects/ghosts.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/photon_noise.hpp"
@@ -13,6 +15,8 @@
 #include "effects/readout_noise.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
+#include "effects/throughput.hpp"
+#include "effects/vignetting.hpp"
 
 namespace astroid {
 
@@ -32,9 +36,9 @@ struct Table {
 };
 
 using CcdTable = Table<JitterModelEffect, JitterFileEffect,         // Pointing
-                       Stars,                                       // Optics
+                       Throughput, Breathing, Stars, Ghosts,        // Optics
                        Sky,                                         // Sky
-                       Prnu, DarkCurrent,                           // PixelMean
+                       Vignetting, Prnu, DarkCurrent,               // PixelMean
                        PhotonNoise, FullWell,                       // PixelSample
                        ReadoutNoise, GainEffect, BiasEffect, Adc>;  // Readout
 

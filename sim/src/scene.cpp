@@ -12,6 +12,7 @@
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/throughput.hpp"
 #include "effects/jitter_model.hpp"
 #include "psf_sensitivity.hpp"
 #include "reference_pixels.hpp"
@@ -22,7 +23,6 @@ namespace {
 
 /// A star this far outside the frame gives less than this share of its light to it.
 constexpr double kNegligibleShare = 1e-12;
-constexpr double kPsfShare = 0.4;  ///< of the accuracy, see AccuracyShares
 
 std::shared_ptr<const AttitudeModel> make_attitude(const Mission& mission) {
   switch (mission.satellite.jitter.model) {
@@ -59,6 +59,11 @@ bool may_be_target(const SceneStar& star, const Mission& mission) {
   return star.magnitude <= mission.photometry.target_limit && star.electrons > 0.0;
 }
 
+/// px².
+double disc_area(const GhostSettings& ghosts) {
+  return kPi * ghosts.radius.value() * ghosts.radius.value();
+}
+
 /// The window of side `size` around a star, as masks see it: 6 px start at floor(x) - 2.
 Rectangle window_around(PixelPosition p, int size) {
   const int back = (size - 1) / 2;
@@ -88,12 +93,6 @@ double peak_pixel_bound(std::span<const SceneStar> stars, double peak_fraction) 
 
 }  // namespace
 
-std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {
-  const PsfSettings& psf = mission.psf;
-  if (psf.model == PsfModel::kGaussian) return make_gaussian_psf(psf.sigma.value());
-  return make_prf_psf(read_psf_table(psf.file), kPsfShare * 1e-6 * mission.simulation.accuracy.value(), psf.phases);
-}
-
 double star_electrons(Magnitude magnitude, const TelescopeSettings& telescope, Seconds exposure_time) {
   return (electron_rate(magnitude, telescope.zero_point) * exposure_time).value();
 }
@@ -109,11 +108,7 @@ std::vector<std::size_t> full_frame_targets(const Scene& scene) {
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     : mission_(mission), psf_(make_psf(mission)), attitude_(make_attitude(mission)) {
   const CcdSettings& ccd = mission_.ccd;
-  projection_.emplace(CameraPointing{.axis = {mission_.satellite.ra.value(), mission_.satellite.dec.value()},
-                                     .roll = mission_.satellite.roll,
-                                     .scale = ccd.pixel_scale,
-                                     .axis_pixel = {ccd.axis_x, ccd.axis_y},
-                                     .projection = ccd.projection});
+  projection_.emplace(make_projection(mission_));
 
   const double exposure = mission_.simulation.exposure_time.value();
   const AttitudeVariance jitter = attitude_->variance();
@@ -121,6 +116,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   std::size_t too_faint = 0;
   std::size_t outside = 0;
   const double reach = psf_->stamp_half_width(kNegligibleShare);
+  const double passed = mean_throughput(mission_);
   for (const CatalogueStar& star : catalogue.stars) {
     SceneStar s;
     s.id = star.id;
@@ -148,12 +144,15 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
       ++too_faint;
       continue;
     }
+    const SkyPosition direction = catalogue.positions == PositionKind::kSky ? s.sky : projection_->to_sky(s.position);
+    add_ghost(s, direction);
     const int margin = static_cast<int>(std::ceil(reach)) + 1;
     if (!inside(grown(detector(), margin), s.position)) {
       ++outside;
       continue;
     }
-    const SkyPosition direction = catalogue.positions == PositionKind::kSky ? s.sky : projection_->to_sky(s.position);
+    s.response = passed * vignetting_at(mission_.telescope.vignetting, *projection_, s.position);
+    s.electrons *= s.response;
     s.motion = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
     stars_.push_back(std::move(s));
   }
@@ -191,7 +190,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.accuracy = 1e-6 * mission_.simulation.accuracy.value();
   s.cameras = mission_.telescope.cameras;
   s.exposures_per_bin = std::max(1.0, std::floor(mission_.analysis.bin / mission_.simulation.cycle));
-  s.background = (mission_.field.sky_background + ccd.dark_current).value() * exposure;
+  s.background = (passed * mission_.field.sky_background + ccd.dark_current).value() * exposure;
   const double readout = ccd.readout_noise.value();
   const double quantisation = ccd.gain.value() / kSqrt12;
   s.pixel_noise_variance = s.background + readout * readout + quantisation * quantisation;
@@ -222,7 +221,27 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   }
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
-  s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+  for (const Ghost& ghost : ghosts_) s.ghost_light += ghost.electrons / disc_area(mission_.telescope.ghosts);
+  s.ghosts = ghosts_.size();
+  s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background + s.ghost_light;
+  for (const double x : {-0.5, ccd.columns - 0.5})
+    for (const double y : {-0.5, ccd.rows - 0.5})
+      s.least_vignetting =
+          std::min(s.least_vignetting, vignetting_at(mission_.telescope.vignetting, *projection_, {x, y}));
+}
+
+void Scene::add_ghost(const SceneStar& star, SkyPosition direction) {
+  const GhostSettings& settings = mission_.telescope.ghosts;
+  if (!(settings.fraction > 0.0) || !(star.magnitude < settings.brighter_than) || !(star.electrons > 0.0)) return;
+  const PixelPosition axis = projection_->axis_pixel();
+  Ghost ghost{.position = {2.0 * axis.x - star.position.x, 2.0 * axis.y - star.position.y},
+              .electrons = settings.fraction * star.electrons,
+              .motion = {}};
+  const auto farthest = grown(detector(), static_cast<int>(std::ceil(settings.radius.value())) + 2);
+  if (!inside(farthest, ghost.position)) return;
+  const AttitudeJacobian j = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
+  ghost.motion = {-j.dx_dyaw, -j.dx_dpitch, -j.dx_droll, -j.dy_dyaw, -j.dy_dpitch, -j.dy_droll};
+  ghosts_.push_back(ghost);
 }
 
 Seconds Scene::mid_time(std::int64_t exposure) const {

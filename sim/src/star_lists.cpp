@@ -34,7 +34,7 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
   double widest = 0.0;
   for (std::size_t i = 0; i < reach.size(); ++i) {
     const SceneStar& star = scene.stars()[i];
-    if (!(star.electrons > 0.0)) continue;
+    if (!(star.electrons > 0.0)) continue;  // so its response is not 0 either
     reach[i] = knobs.stamp_half_width(star.electrons) + excursion(star.motion, farthest) + kRounding;
     widest = std::max(widest, reach[i]);
     cells[{cell(star.position.x), cell(star.position.y)}].push_back(static_cast<std::uint32_t>(i));
@@ -56,7 +56,8 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     list.reserve(found.size());
     for (const std::uint32_t i : found) {
       const SceneStar& star = scene.stars()[i];
-      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion});
+      // Light as it enters the optics: conditions and responses take away what they take.
+      list.push_back({star.position, star.electrons / star.response, knobs.stamp_half_width(star.electrons), star.motion});
     }
   }
   return lists;

@@ -84,6 +84,10 @@ std::shared_ptr<const Distortion> make_radial_distortion(const RadialTangential&
 /// @throws InputError when the order is not 2 .. 9 or a coefficient is not finite.
 std::shared_ptr<const Distortion> make_sip_distortion(SipPolynomial polynomial);
 
+/// The polynomial of a FITS file: A_ORDER, B_ORDER, A_i_j and B_i_j of the primary header, absent terms 0.
+/// @throws InputError naming every unusable keyword; EnvironmentError when the file cannot be read.
+SipPolynomial read_sip_polynomial(const std::string& path);
+
 /// A polynomial that stands for a distortion's undistort() in a FITS header.
 struct SipFit {
   SipPolynomial polynomial{};

@@ -72,6 +72,9 @@ class PixelPsf {
   /// Upper bound of the relative error of an aperture's flux due to the approximation of this renderer (0 if exact).
   [[nodiscard]] virtual double approximation_error() const = 0;
 
+  /// Where on the detector it may be told from others: one place for a PSF that is the same everywhere.
+  [[nodiscard]] virtual std::vector<PixelPosition> places() const { return {{0.0, 0.0}}; }
+
   [[nodiscard]] virtual std::string description() const = 0;
 };
 
@@ -146,5 +149,24 @@ PsfTable diffuse_psf_table(const PsfTable& table, Pixels sigma);
 /// @param accuracy  relative flux error allowed to the interpolation; decides the number of phases.
 /// @param phases    number of phases per axis, or 0 to let `accuracy` decide.
 std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases = 0);
+
+/// A PSF table and the place of the field where it holds.
+struct FieldPsfTable {
+  PixelPosition position;
+  PsfTable table;
+};
+
+/// Reads every image of a FITS file as a PSF table (read_psf_table()); its place on the detector, 0-based px, stands in
+/// the keywords FIELDX and FIELDY.
+/// @throws InputError naming image and keyword; EnvironmentError when the file cannot be read.
+std::vector<FieldPsfTable> read_field_psf(const std::string& path);
+
+/// A PSF that varies over the field: tables blended with the weights of a thin-plate spline through their places, so
+/// smooth, exact at every table's place, and of sum 1. Beyond the box around the places it stays what it is at the edge.
+/// @param diffusion  px, of the charge (diffuse_psf_table()).  @param accuracy, phases  of make_prf_psf().
+/// @complexity  as many times make_prf_psf()'s as there are tables
+/// @throws InputError when two tables share a place.
+std::shared_ptr<const PixelPsf> make_field_psf(std::span<const FieldPsfTable> tables, Pixels diffusion, double accuracy,
+                                               int phases = 0);
 
 }  // namespace astroid

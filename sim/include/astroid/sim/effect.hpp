@@ -97,7 +97,7 @@ struct EffectNeed {
 /// What rendering a star takes.
 struct RenderedStar {
   PixelPosition position;   ///< px, at the nominal pointing
-  double electrons = 0.0;   ///< per exposure
+  double electrons = 0.0;   ///< per exposure, before throughput and vignetting
   double half_width = 0.0;  ///< of its stamp, px
   AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
 };
@@ -108,6 +108,7 @@ struct CameraState {
   std::shared_ptr<const PixelLayout> layout;                  ///< the computed pixels
   std::vector<Strip> strips;                                  ///< of the layout
   std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][area]: those that may reach it
+  Plane<float, unit::Relative> vignetting;                    ///< 1 on the axis; empty when the effect is off
   Plane<float, unit::Relative> prnu;                          ///< pixel response, mean 1; empty when the effect is off
   Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
 };

@@ -15,6 +15,7 @@
 #include "astroid/core/psf.hpp"
 #include "astroid/core/wcs.hpp"
 #include "astroid/sim/attitude.hpp"
+#include "astroid/sim/optics.hpp"
 #include "astroid/sim/scene_summary.hpp"
 
 namespace astroid {
@@ -25,9 +26,17 @@ struct SceneStar {
   SkyPosition sky;          ///< NaN for a pixel catalogue
   PixelPosition position;   ///< px, at the nominal pointing, rounded to 2^-24 px
   Magnitude magnitude;      ///< in the zero point's passband
-  double electrons = 0.0;   ///< per exposure
+  double electrons = 0.0;   ///< detected per exposure, mean over the run
+  double response = 1.0;    ///< what `electrons` have of throughput and vignetting
   AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
   bool is_target = false;   ///< brighter than the target limit and on the computed pixels
+};
+
+/// The reflection of a bright star: a uniform disc, mirrored through the optical axis.
+struct Ghost {
+  PixelPosition position;   ///< px, of its centre at the nominal pointing
+  double electrons = 0.0;   ///< per exposure, before throughput and vignetting
+  AttitudeJacobian motion;  ///< px per arcsec, opposite to the star's
 };
 
 /// The immutable scene.
@@ -46,6 +55,8 @@ class Scene {
   [[nodiscard]] const Mission& mission() const { return mission_; }
   [[nodiscard]] Rectangle detector() const { return {0, 0, mission_.ccd.columns, mission_.ccd.rows}; }
   [[nodiscard]] std::span<const SceneStar> stars() const { return stars_; }
+  /// Of all stars of the catalogue whose ghost may touch the detector, in catalogue order.
+  [[nodiscard]] std::span<const Ghost> ghosts() const { return ghosts_; }
   /// Indices of the targets, in catalogue order.
   [[nodiscard]] std::span<const std::size_t> targets() const { return targets_; }
   [[nodiscard]] const std::shared_ptr<const PixelLayout>& layout() const { return layout_; }
@@ -58,9 +69,12 @@ class Scene {
   [[nodiscard]] std::span<const std::string> notes() const { return notes_; }
 
  private:
+  void add_ghost(const SceneStar& star, SkyPosition direction);
+
   Mission mission_;
   std::optional<SkyProjection> projection_;
   std::vector<SceneStar> stars_;
+  std::vector<Ghost> ghosts_;
   std::vector<std::size_t> targets_;
   std::shared_ptr<const PixelLayout> layout_;
   std::shared_ptr<const PixelPsf> psf_;
@@ -68,9 +82,6 @@ class Scene {
   SceneSummary summary_;
   std::vector<std::string> notes_;
 };
-
-/// The PSF of a mission, accurate enough for its configuration. @throws InputError, EnvironmentError for a table
-std::shared_ptr<const PixelPsf> make_psf(const Mission& mission);
 
 /// Indices of the stars that are targets when the full frame is computed: a decision that looks at these is the same in
 /// windows and sub-fields.

@@ -11,6 +11,7 @@ namespace astroid {
 /// The believed field of a scene; owns what GroundModel points to.
 struct Ground {
   std::vector<FieldStar> stars;
+  std::vector<double> backgrounds;  ///< e- per pixel at each target; empty where it is the same everywhere
   GroundModel model;
 };
 
