@@ -92,10 +92,10 @@ void check_optics(const Mission& m, Checker& checker) {
   check_count(distortion.prism.size(), 2, "Telescope/Distortion/Prism");
   checker.require(distortion.model != DistortionModel::kSip || !distortion.file.empty(), "Telescope/Distortion/File",
                   "Telescope/Distortion/model", "is missing", "the name of a readable file, since the model is sip");
-  checker.require(m.telescope.vignetting.model != VignettingModel::kPolynomial ||
-                      !m.telescope.vignetting.polynomial.empty(),
-                  "Telescope/Vignetting/Polynomial", "Telescope/Vignetting/model", "is missing",
-                  "coefficients, since the model is polynomial");
+  checker.require(
+      m.telescope.vignetting.model != VignettingModel::kPolynomial || !m.telescope.vignetting.polynomial.empty(),
+      "Telescope/Vignetting/Polynomial", "Telescope/Vignetting/model", "is missing",
+      "coefficients, since the model is polynomial");
   checker.require(m.psf.model != PsfModel::kField || !m.psf.file.empty(), "PSF/File", "PSF/Model", "is missing",
                   "the name of a readable file, since the model is field");
 }

@@ -40,8 +40,8 @@ constexpr std::array kSections = {
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part :
-       {simulation_parameters, satellite_parameters, telescope_parameters, optics_parameters, psf_parameters, stellar_field_parameters,
-        ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+       {simulation_parameters, satellite_parameters, telescope_parameters, optics_parameters, psf_parameters,
+        stellar_field_parameters, ccd_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

@@ -55,7 +55,8 @@ std::vector<Parameter> optics_parameters() {
       {.path = "Telescope/Distortion/Radial",
        .kind = Kind::kRealList,
        .range = kCoefficients,
-       .meaning = "Radial coefficients k1, k2 and k3: x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) where the focal length is 1.",
+       .meaning =
+           "Radial coefficients k1, k2 and k3: x' = x (1 + k1 r^2 + k2 r^4 + k3 r^6) where the focal length is 1.",
        .example = "0.32419 0.0232909 0.407979",
        .assign = [](Mission& m, const Value& v) { m.telescope.distortion.radial = v.reals; }},
       {.path = "Telescope/Distortion/Tangential",
@@ -73,8 +74,8 @@ std::vector<Parameter> optics_parameters() {
        .assign = [](Mission& m, const Value& v) { m.telescope.distortion.prism = v.reals; }},
       {.path = "Telescope/Distortion/File",
        .kind = Kind::kFile,
-       .meaning = "FITS file whose first image header holds A_ORDER, B_ORDER, A_i_j and B_i_j of the sip model, in "
-                  "pixels from the optical axis.",
+       .meaning = "FITS file whose primary header holds A_ORDER, B_ORDER, A_i_j and B_i_j of the sip model, in pixels "
+                  "from the optical axis.",
        .example = "distortion.fits",
        .assign = [](Mission& m, const Value& v) { m.telescope.distortion.file = v.text; }},
       {.path = "Telescope/Vignetting/model",
@@ -82,7 +83,8 @@ std::vector<Parameter> optics_parameters() {
        .is_attribute = true,
        .fallback = "none",
        .choices = {"none", "cos2", "polynomial"},
-       .meaning = "How the light falls off with the field angle: not at all, as its squared cosine, or as a polynomial.",
+       .meaning =
+           "How the light falls off with the field angle: not at all, as its squared cosine, or as a polynomial.",
        .example = "polynomial",
        .assign =
            [](Mission& m, const Value& v) {

@@ -10,8 +10,9 @@ std::vector<Parameter> psf_parameters() {
        .kind = Kind::kChoice,
        .fallback = "gaussian",
        .choices = {"gaussian", "table", "moffat", "airy", "field"},
-       .meaning = "Shape of the point-spread function: a circular Gaussian, a table in a FITS file, a Moffat profile, the "
-                  "Airy pattern of a round aperture, or a FITS file of several tables for places of the field.",
+       .meaning =
+           "Shape of the point-spread function: a circular Gaussian, a table in a FITS file, a Moffat profile, the "
+           "Airy pattern of a round aperture, or a FITS file of several tables for places of the field.",
        .example = "gaussian",
        .assign =
            [](Mission& m, const Value& v) {
@@ -43,8 +44,9 @@ std::vector<Parameter> psf_parameters() {
        .unit = "px",
        .range = from_to(0.3, 20),
        .fallback = "1",
-       .meaning = "Wavelength over aperture diameter of the Airy pattern; without obscuration its first dark ring is at "
-                  "1.22 of it.",
+       .meaning =
+           "Wavelength over aperture diameter of the Airy pattern; without obscuration its first dark ring is at "
+           "1.22 of it.",
        .example = "1.2",
        .assign = [](Mission& m, const Value& v) { m.psf.lambda_over_d = Pixels(v.real); }},
       {.path = "PSF/Obscuration",

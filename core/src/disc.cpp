@@ -21,8 +21,7 @@ double below(double a, double b, double y) {
   const double reach = det::sqrt(std::max(0.0, 1.0 - height * height));
   const double left = std::clamp(-reach, a, b);
   const double right = std::clamp(reach, a, b);
-  const double area =
-      height * (right - left) + (half_disc(left) - half_disc(a)) + (half_disc(b) - half_disc(right));
+  const double area = height * (right - left) + (half_disc(left) - half_disc(a)) + (half_disc(b) - half_disc(right));
   return y < 0.0 ? -area : area;
 }
 

@@ -33,7 +33,7 @@ class FieldWeights {
   PixelPosition lower_, upper_;
   double scale_ = 1.0;  // 1/px: brings the box to size 1
   bool thin_plate_ = true;
-  std::size_t rows_ = 0;          // basis functions: one a node, and 1 or 1, x, y
+  std::size_t rows_ = 0;         // basis functions: one a node, and 1 or 1, x, y
   std::vector<double> inverse_;  // (rows, nodes)
 };
 

@@ -19,7 +19,8 @@ class FieldPsf final : public PixelPsf {
 
   void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const override {
     ASTROID_CHECK_EQ(fractions.size(), box.size());
-    blend(centre, fractions, [&](const PixelPsf& member, std::span<double> part) { member.integrate(centre, box, part); });
+    blend(centre, fractions,
+          [&](const PixelPsf& member, std::span<double> part) { member.integrate(centre, box, part); });
   }
 
   void integrate_gradient(PixelPosition centre, Rectangle box, std::span<double> dpdx,

@@ -13,8 +13,7 @@ SipPolynomial read_sip_polynomial(const std::string& path) {
   const FitsReader fits(path);
   std::vector<Problem> problems;
   const auto refuse = [&](const std::string& key, const std::string& value, const char* expected, const char* message) {
-    problems.push_back(
-        {.file = path, .parameter = key, .value = value, .expected = expected, .message = message});
+    problems.push_back({.file = path, .parameter = key, .value = value, .expected = expected, .message = message});
   };
   int order = 0;
   for (const char* key : {"A_ORDER", "B_ORDER"}) {

@@ -49,9 +49,8 @@ void measure_at(const PixelPsf& psf, int x0, int y0, PsfSensitivity& sensitivity
       for (int size = 2; size <= kLargestMask; ++size) {
         const Rectangle mask{x0 - size / 2, y0 - size / 2, size, size};
         const auto flux_at = [&](double shift) {
-          const PixelPosition centre =
-              along_x ? PixelPosition{x0 + offset + shift, static_cast<double>(y0)}
-                      : PixelPosition{static_cast<double>(x0), y0 + offset + shift};
+          const PixelPosition centre = along_x ? PixelPosition{x0 + offset + shift, static_cast<double>(y0)}
+                                               : PixelPosition{static_cast<double>(x0), y0 + offset + shift};
           return mask_flux(psf, centre, mask, scratch);
         };
         const double middle = flux_at(0.0);

@@ -57,7 +57,8 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     for (const std::uint32_t i : found) {
       const SceneStar& star = scene.stars()[i];
       // Light as it enters the optics: conditions and responses take away what they take.
-      list.push_back({star.position, star.electrons / star.response, knobs.stamp_half_width(star.electrons), star.motion});
+      list.push_back(
+          {star.position, star.electrons / star.response, knobs.stamp_half_width(star.electrons), star.motion});
     }
   }
   return lists;

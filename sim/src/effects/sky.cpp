@@ -20,7 +20,8 @@ EffectNeed Sky::is_needed(const SceneSummary& scene) const {
 }
 
 void Sky::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  add_constant(state.expected.pixels(strip), state.conditions.throughput * sky_electrons(context.scene.mission()).value());
+  add_constant(state.expected.pixels(strip),
+               state.conditions.throughput * sky_electrons(context.scene.mission()).value());
 }
 
 }  // namespace astroid

@@ -25,7 +25,8 @@ EffectNeed Throughput::is_needed(const SceneSummary& scene) const {
   const double tolerance = flux > 0.0 ? scene.flux_tolerance(flux) / flux : scene.accuracy;
   EffectNeed need;
   need.needed = worst > tolerance;
-  need.why = fmt::format("the optics pass {:.6g} of the light at the start and {:.6g} at the end of the run", first, last);
+  need.why =
+      fmt::format("the optics pass {:.6g} of the light at the start and {:.6g} at the end of the run", first, last);
   need.bias_bound = worst * flux;
   // What changes slowly in an hour changes it alike in all cameras.
   const double change = std::abs(first - last) * std::min(1.0, mission.analysis.bin / length);

@@ -14,7 +14,7 @@ namespace astroid {
 
 namespace {
 
-constexpr int kStep = 32;  // px between exact values
+constexpr int kStep = 16;  // px between exact values
 constexpr std::size_t kTaps = 4;
 
 /// Weights of the nodes -1 … 2 around a place between nodes 0 and 1.
@@ -45,20 +45,20 @@ class Lattice {
   void fill(int x0, int y, std::span<float> values) {
     const int j = node_below(y);
     const auto weights_y = lagrange(static_cast<double>(y - j * kStep) / kStep);
-    std::array<double, kTaps> columns{};
-    int current = node_below(x0) - 1;
+    const auto column = [&](int i) {
+      double sum = 0.0;
+      for (std::size_t b = 0; b < kTaps; ++b) sum += weights_y[b] * node(i, j - 1 + static_cast<int>(b));
+      return sum;
+    };
+    int first = node_below(x0);
+    std::array<double, kTaps> columns = {column(first - 1), column(first), column(first + 1), column(first + 2)};
     for (std::size_t k = 0; k < values.size(); ++k) {
       const int x = x0 + static_cast<int>(k);
-      const int i = node_below(x);
-      if (i != current) {
-        current = i;
-        for (std::size_t a = 0; a < kTaps; ++a) {
-          columns[a] = 0.0;
-          for (std::size_t b = 0; b < kTaps; ++b)
-            columns[a] += weights_y[b] * node(i - 1 + static_cast<int>(a), j - 1 + static_cast<int>(b));
-        }
+      if (x - first * kStep == kStep) {
+        ++first;
+        columns = {columns[1], columns[2], columns[3], column(first + 2)};
       }
-      const auto weights_x = lagrange(static_cast<double>(x - i * kStep) / kStep);
+      const auto weights_x = lagrange(static_cast<double>(x - first * kStep) / kStep);
       double sum = 0.0;
       for (std::size_t a = 0; a < kTaps; ++a) sum += weights_x[a] * columns[a];
       values[k] = static_cast<float>(std::clamp(sum, 0.0, 1.0));

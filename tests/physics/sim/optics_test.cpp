@@ -61,8 +61,8 @@ TEST(Vignetting, HasPlatosValues) {
     weights += weight;
   }
   EXPECT_NEAR(sum / weights, 0.920, 0.004);
-  EXPECT_EQ(vignetting_at({VignettingModel::kPolynomial, {1.0}}, Degrees(20.0)), 0.0);    // never negative
-  EXPECT_EQ(vignetting_at({VignettingModel::kPolynomial, {-1.0}}, Degrees(20.0)), 1.0);   // never more than all
+  EXPECT_EQ(vignetting_at({VignettingModel::kPolynomial, {1.0}}, Degrees(20.0)), 0.0);   // never negative
+  EXPECT_EQ(vignetting_at({VignettingModel::kPolynomial, {-1.0}}, Degrees(20.0)), 1.0);  // never more than all
   EXPECT_NEAR(vignetting_at({VignettingModel::kCosineSquared, {}}, Degrees(60.0)), 0.25, 1e-15);
 }
 
@@ -103,7 +103,8 @@ TEST(Throughput, FallsLinearlyOverTheYears) {
   Mission mission = test::bare_mission(60, 60);
   mission.simulation.cycle = Seconds(86400.0 * 36.525);  // a tenth of a year
   mission.simulation.exposures = 101;
-  mission.telescope.throughput = {.beginning_of_life = 0.9, .end_of_life = 0.8, .lifetime_years = 5.0, .age_years = 1.0};
+  mission.telescope.throughput = {
+      .beginning_of_life = 0.9, .end_of_life = 0.8, .lifetime_years = 5.0, .age_years = 1.0};
   mission.field.sky_background = ElectronsPerSecond(2.0);
   const Camera camera(mission, test::lab_catalogue({{30.0, 30.0, 1e6}}));
   ASSERT_TRUE(camera.plan->runs("throughput"));
@@ -120,7 +121,8 @@ TEST(Throughput, FallsLinearlyOverTheYears) {
 TEST(Throughput, SharesEpochsThatAreShortEnough) {
   Mission mission = test::bare_mission(60, 60);
   mission.simulation.exposures = 100000;
-  mission.telescope.throughput = {.beginning_of_life = 1.0, .end_of_life = 0.9, .lifetime_years = 0.5, .age_years = 0.0};
+  mission.telescope.throughput = {
+      .beginning_of_life = 1.0, .end_of_life = 0.9, .lifetime_years = 0.5, .age_years = 0.0};
   const Camera camera(mission, test::lab_catalogue({{30.0, 30.0, 1e7}}));
   const std::int64_t epoch = camera.plan->epoch_exposures;
   ASSERT_GT(epoch, 0);
@@ -182,8 +184,9 @@ TEST(Ghosts, AreDiscsOppositeToTheirStars) {
     brightest = std::max(brightest, ghost);
   }
   EXPECT_NEAR(sum, 1e4, 1e-6);  // the light is kept
-  EXPECT_NEAR(x_mean / sum, 2.0 * 90.0 - 40.3, 1e-6);
-  EXPECT_NEAR(y_mean / sum, 2.0 * 101.25 - 60.2, 1e-6);
+  // Light at the centres of the pixels that the edge cuts is up to a thousandth of a pixel from where it fell.
+  EXPECT_NEAR(x_mean / sum, 2.0 * 90.0 - 40.3, 1e-3);
+  EXPECT_NEAR(y_mean / sum, 2.0 * 101.25 - 60.2, 1e-3);
   EXPECT_NEAR(brightest, 1e4 / (kPi * 11.7 * 11.7), 1e-8);  // and uniform
 }
 

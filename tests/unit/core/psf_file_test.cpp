@@ -139,8 +139,8 @@ TEST_F(PsfFile, OfAFieldWithoutPlacesIsRefused) {
 }
 
 TEST_F(PsfFile, OfSipCoefficientsIsReadFromItsHeader) {
-  const SipPolynomial sip = read_sip_polynomial(
-      write({{"A_ORDER", 3}, {"B_ORDER", 2}, {"A_2_0", 1e-6}, {"A_1_2", -2e-9}, {"B_1_1", 3e-6}}));
+  const SipPolynomial sip =
+      read_sip_polynomial(write({{"A_ORDER", 3}, {"B_ORDER", 2}, {"A_2_0", 1e-6}, {"A_1_2", -2e-9}, {"B_1_1", 3e-6}}));
   EXPECT_EQ(sip.order, 3);
   EXPECT_EQ(sip.a[sip.index(2, 0)], 1e-6);
   EXPECT_EQ(sip.a[sip.index(1, 2)], -2e-9);

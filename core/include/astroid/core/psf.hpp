@@ -162,7 +162,8 @@ struct FieldPsfTable {
 std::vector<FieldPsfTable> read_field_psf(const std::string& path);
 
 /// A PSF that varies over the field: tables blended with the weights of a thin-plate spline through their places, so
-/// smooth, exact at every table's place, and of sum 1. Beyond the box around the places it stays what it is at the edge.
+/// smooth, exact at every table's place, and of sum 1. Beyond the box around the places it stays what it is at the
+/// edge.
 /// @param diffusion  px, of the charge (diffuse_psf_table()).  @param accuracy, phases  of make_prf_psf().
 /// @complexity  as many times make_prf_psf()'s as there are tables
 /// @throws InputError when two tables share a place.

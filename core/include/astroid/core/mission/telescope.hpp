@@ -62,8 +62,8 @@ struct CameraGroup {
 struct TelescopeSettings {
   Magnitude zero_point{20.62};  ///< magnitude that gives one detected electron per second
   std::string zero_point_passband = "P";
-  int cameras = 24;                     ///< that observe the field
-  int simulated_cameras = 1;            ///< n <= cameras; independent terms are scaled to `cameras`
+  int cameras = 24;           ///< that observe the field
+  int simulated_cameras = 1;  ///< n <= cameras; independent terms are scaled to `cameras`
   ThroughputSettings throughput;
   DistortionSettings distortion;
   VignettingSettings vignetting;
