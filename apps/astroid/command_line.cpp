@@ -219,8 +219,10 @@ int run_command_line(int argc, char** argv) {
   sub->add_option("PARAMETER", parameter, "CCD/Gain, Gain, or a section; nothing for the list");
   sub->callback([&] { command = [&] { return explain(parameter); }; });
 
+  bool calibrate = false;
   sub = app.add_subcommand("doctor", "versions of everything the program runs on, and what is missing");
-  sub->callback([&] { command = [] { return doctor(); }; });
+  sub->add_flag("--calibrate", calibrate, "measure this machine (some seconds), so that plans predict its times");
+  sub->callback([&] { command = [&] { return doctor(calibrate); }; });
 
   check_command(app, argc, argv);
   try {

@@ -199,13 +199,13 @@ Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoc
   return conditions;
 }
 
-Plan make_plan(const Scene& scene) {
+Plan make_plan(const Scene& scene, const CostFactors& costs) {
   constexpr AccuracyShares kShares;
   Plan plan;
   const SceneSummary& summary = scene.summary();
   bool moves = false;
   for (const auto& effect : effect_table(scene.mission().simulation.type)) {
-    PlannedEffect planned{effect.get(), effect->is_needed(summary)};
+    PlannedEffect planned{.effect = effect.get(), .need = effect->is_needed(summary)};
     moves = moves || (planned.need.needed && effect->spec().level == EffectLevel::kPointing);
     plan.effects.push_back(std::move(planned));
   }
@@ -222,7 +222,7 @@ Plan make_plan(const Scene& scene) {
   plan_jitter(scene, kShares.jitter, moves, plan);
   if (steady) plan_polynomial(scene, kShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan, plan.approximations);
-  plan.seconds_per_exposure = predicted_seconds(plan, scene);
+  predict_times(plan, scene, costs);
   plan.memory_bytes = predicted_memory(plan);
   return plan;
 }

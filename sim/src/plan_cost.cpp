@@ -21,7 +21,6 @@ constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},     
                                      {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
                                      {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
-constexpr double kRecall = 0.7;    ///< ns a pixel: it is read from where it is kept, if nothing moves
 constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
 /// Ns a pixel of one map, where the maps fit into a share of the last cache and where they come from memory.
 constexpr double kMapPixel = 0.15;
@@ -81,6 +80,22 @@ bool recalls(const Plan& plan) {
   return plan.still || plan.knobs.jitter == JitterTreatment::kPolynomial;
 }
 
+/// Of one effect that runs, on the machine that the constants were measured on.
+double nominal_seconds(const PlannedEffect& effect, const Plan& plan, const Scene& scene) {
+  const EffectSpec& spec = effect.effect->spec();
+  const auto pixels = static_cast<double>(plan.layout->size());
+  if (spec.name == "stars") {    // which makes the noiseless image, or stands for its recall
+    if (plan.still) return 0.0;  // the draws read it where it lies
+    if (plan.knobs.jitter == JitterTreatment::kPolynomial)
+      return maps_seconds(plan.knobs.polynomial.terms.size(), pixels);
+    return kNanosecond * (kClear * pixels + stars_cost(plan, scene));
+  }
+  if (recalls(plan) && spec.role != ImageRole::kVaryingLight && spec.level <= EffectLevel::kPixelMean) return 0.0;
+  for (const PixelCost& cost : kPixelCosts)
+    if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * (spec.per_read ? plan.reads : 1);
+  return 0.0;
+}
+
 }  // namespace
 
 double full_frame_seconds(const Plan& plan, const Scene& scene) {
@@ -104,27 +119,20 @@ double maps_bytes(std::size_t terms, double pixels) {
   return pixels * static_cast<double>(sizeof(double) + (terms - 1) * sizeof(float));
 }
 
-double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Scene& scene) {
+std::string cost_part(const PlannedEffect& effect, const Plan& plan) {
   const EffectSpec& spec = effect.effect->spec();
-  const auto pixels = static_cast<double>(plan.layout->size());
-  if (!effect.need.needed) return 0.0;
-  if (recalls(plan) && spec.level <= EffectLevel::kPixelMean) {
-    const bool moves = plan.knobs.jitter == JitterTreatment::kPolynomial;
-    return spec.name == "stars" && moves ? maps_seconds(plan.knobs.polynomial.terms.size(), pixels) : 0.0;
-  }
-  if (spec.name == "stars") return kNanosecond * stars_cost(plan, scene);
-  for (const PixelCost& cost : kPixelCosts)
-    if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels;
-  return 0.0;
+  if (spec.name != "stars") return std::string(spec.name);
+  return plan.knobs.jitter == JitterTreatment::kPolynomial ? "maps" : "stars, " + plan.renderer;
 }
 
-double predicted_seconds(const Plan& plan, const Scene& scene) {
+void predict_times(Plan& plan, const Scene& scene, const CostFactors& costs) {
   const PixelLayout& layout = *plan.layout;
-  const double begin = plan.still ? kRecall : recalls(plan) ? 0.0 : kClear;  // of a pixel
-  double seconds = kNanosecond * (begin * static_cast<double>(layout.size()) +
-                                  kRegion * static_cast<double>(layout.regions().size()));
-  for (const PlannedEffect& effect : plan.effects) seconds += predicted_seconds(effect, plan, scene);
-  return seconds;
+  plan.seconds_per_exposure = kNanosecond * kRegion * static_cast<double>(layout.regions().size());
+  for (PlannedEffect& effect : plan.effects) {
+    effect.seconds =
+        effect.need.needed ? nominal_seconds(effect, plan, scene) * costs.of(cost_part(effect, plan)) : 0.0;
+    plan.seconds_per_exposure += effect.seconds;
+  }
 }
 
 double predicted_memory(const Plan& plan) {

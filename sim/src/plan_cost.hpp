@@ -7,11 +7,8 @@
 
 namespace astroid {
 
-/// Predicted time of one exposure of one camera on one core, simulation only.
-double predicted_seconds(const Plan& plan, const Scene& scene);
-
-/// Predicted time of one effect in one exposure, s; 0 when it is off or cached.
-double predicted_seconds(const PlannedEffect& effect, const Plan& plan, const Scene& scene);
+/// Fills in the time of each effect in one exposure of one camera on one core, and their sum; simulation only.
+void predict_times(Plan& plan, const Scene& scene, const CostFactors& costs);
 
 /// Time of rendering every star of the scene, and of summing the maps of a polynomial instead, over so many pixels.
 double full_frame_seconds(const Plan& plan, const Scene& scene);

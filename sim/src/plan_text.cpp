@@ -34,7 +34,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   const bool recalled = plan.still || plan.knobs.jitter == JitterTreatment::kPolynomial;
   for (const PlannedEffect& planned : plan.effects) {
     const EffectSpec& spec = planned.effect->spec();
-    const double ms = kMilli * predicted_seconds(planned, plan, scene);
+    const double ms = kMilli * planned.seconds;
     out += fmt::format("  {:<3} {:<14} {:<12} {}\n", planned.need.needed ? "on" : "off", spec.name,
                        to_string(spec.level), planned.need.why);
     if (planned.need.needed) {
@@ -105,7 +105,7 @@ std::string to_json(const Plan& plan, const Scene& scene) {
                                {"why", planned.need.why},
                                {"bias_if_skipped_electrons", planned.need.bias_bound},
                                {"variance_if_skipped_relative", planned.need.variance_bound},
-                               {"predicted_seconds", predicted_seconds(planned, plan, scene)},
+                               {"predicted_seconds", planned.seconds},
                                {"source", spec.source}});
   }
   json["approximations"] = plan.approximations;

@@ -113,18 +113,19 @@ bool Simulator::varies() const {
 
 std::vector<Simulator::Step> Simulator::expected_steps(Source source) const {
   std::vector<Step> steps;
-  std::size_t first = plan_->effects.size();
+  std::size_t light =
+      plan_->effects.size();  // the first effect that makes light: the image as a whole is put down to it
   for (std::size_t i = 0; i < plan_->effects.size(); ++i) {
     const EffectSpec& spec = plan_->effects[i].effect->spec();
     if (is_pointing(spec) || !is_expectation(spec)) continue;  // begin()
-    first = std::min(first, i);
+    if (spec.role == ImageRole::kLight) light = std::min(light, i);
     // What is recalled has everything but the varying light, which goes its own way through the responses.
     const bool applies = source == Source::kRender || makes_light(spec) || spec.role == ImageRole::kResponse;
     if (plan_->effects[i].need.needed && applies) steps.push_back({Act::kApply, i});
   }
-  if (source == Source::kRender || varies()) steps.insert(steps.begin(), {Act::kClear, first});
-  if (source == Source::kRecall && varies()) steps.push_back({Act::kAddRecalled, first});
-  if (source == Source::kRecall && !varies()) steps = {{Act::kRecall, first}};
+  if (source == Source::kRender || varies()) steps.insert(steps.begin(), {Act::kClear, light});
+  if (source == Source::kRecall && varies()) steps.push_back({Act::kAddRecalled, light});
+  if (source == Source::kRecall && !varies()) steps = {{Act::kRecall, light}};
   return steps;
 }
 

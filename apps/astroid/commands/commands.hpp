@@ -91,6 +91,7 @@ int field(const FieldOptions& options);
 int init(const std::string& mission, const std::string& output, bool overwrite);
 int validate(const ConfigurationOptions& options, bool schema);
 int explain(const std::string& parameter);
-int doctor();
+/// @param calibrate  measures the machine and keeps what it finds.
+int doctor(bool calibrate);
 
 }  // namespace astroid::commands

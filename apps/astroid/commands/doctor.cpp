@@ -5,14 +5,33 @@
 #include <filesystem>
 #include <thread>
 
+#include "astroid/core/error.hpp"
 #include "astroid/core/vector_target.hpp"
+#include "astroid/pipeline/calibrate.hpp"
 #include "astroid/pipeline/run_record.hpp"
 #include "commands/commands.hpp"
 #include "commands/configuration.hpp"
 
 namespace astroid::commands {
 
-int doctor() {
+namespace {
+
+void calibrate_machine() {
+  constexpr double kSecondsAScene = 1.0;
+  const std::filesystem::path file = costs_file();
+  if (file.empty()) throw EnvironmentError("costs.json", "neither HOME nor XDG_CACHE_HOME says where to keep it");
+  fmt::print("\nMeasuring this machine; leave it alone for some seconds\n");
+  const CostFactors costs =
+      measure_costs(kSecondsAScene, [](const std::string& scene) { fmt::print("  {}\n", scene); });
+  fmt::print("\n  {:<24} time over what plans assume\n", "part");
+  for (const auto& [part, factor] : costs.parts) fmt::print("  {:<24} {:.2f}\n", part, factor);
+  write_costs(costs, file);
+  fmt::print("\nPlans on this machine use these from now on: {}\n", file.string());
+}
+
+}  // namespace
+
+int doctor(bool calibrate) {
   for (const ComponentVersion& component : component_versions())
     fmt::print("{:<14} {}\n", component.name, component.version);
   fmt::print("{:<14} {}\n", "processors", std::thread::hardware_concurrency());
@@ -32,6 +51,11 @@ int doctor() {
       fmt::print("\ngnuplot is missing: reports will have no figures (Debian: apt install gnuplot-nox)\n");
       healthy = false;
     }
+  if (calibrate) {
+    calibrate_machine();
+  } else if (read_costs(costs_file()).parts.empty()) {
+    fmt::print("\nTimes in plans are those of another machine: astroid doctor --calibrate measures this one.\n");
+  }
   fmt::print("\n{}\n", healthy ? "All is well." : "Something is missing, see above.");
   return healthy ? 0 : 3;
 }

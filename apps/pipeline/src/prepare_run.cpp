@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "astroid/analysis/budget.hpp"
+#include "astroid/pipeline/calibrate.hpp"
 #include "astroid/pipeline/field.hpp"
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
@@ -15,7 +16,7 @@ namespace astroid {
 PreparedRun prepare_run(const Mission& mission) {
   PreparedRun run;
   run.scene = std::make_shared<const Scene>(mission, load_field(mission));
-  run.plan = std::make_shared<const Plan>(make_plan(*run.scene));
+  run.plan = std::make_shared<const Plan>(make_plan(*run.scene, read_costs(costs_file())));
   return run;
 }
 

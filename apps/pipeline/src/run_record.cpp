@@ -5,12 +5,10 @@
 #include <gsl/gsl_version.h>
 #include <libxml/xmlversion.h>
 #include <sys/resource.h>
-#include <unistd.h>
 #include <wcslib/wcslib.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
@@ -18,6 +16,7 @@
 #include <thread>
 
 #include "astroid/core/atomic_file.hpp"
+#include "host.hpp"
 
 namespace astroid {
 
@@ -33,36 +32,6 @@ std::string first_line_of(const char* command) {
   std::string text = read ? line.data() : "";
   while (!text.empty() && (text.back() == '\n' || text.back() == ' ')) text.pop_back();
   return text.empty() ? "missing" : text;
-}
-
-std::string host_name() {
-  std::array<char, 256> name{};
-  return gethostname(name.data(), name.size() - 1) == 0 ? name.data() : "unknown";
-}
-
-std::string utc_now() {
-  const std::time_t now = std::chrono::system_clock::to_time_t(std::chrono::system_clock::now());
-  std::tm utc{};
-  gmtime_r(&now, &utc);
-  std::array<char, 32> text{};
-  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
-  return text.data();
-}
-
-std::string processor_name() {
-  FILE* file = std::fopen("/proc/cpuinfo", "r");
-  if (file == nullptr) return "unknown";
-  std::array<char, 512> line{};
-  std::string name = "unknown";
-  while (std::fgets(line.data(), static_cast<int>(line.size()), file) != nullptr) {
-    const std::string text = line.data();
-    if (!text.starts_with("model name")) continue;
-    const std::size_t colon = text.find(':');
-    if (colon != std::string::npos) name = text.substr(colon + 2, text.size() - colon - 3);
-    break;
-  }
-  std::fclose(file);
-  return name;
 }
 
 nlohmann::ordered_json product_list(std::span<const Product> products) {
@@ -127,6 +96,12 @@ void write_run_record(const ProductFolder& folder, const RunRecord& record) {
                                       {"measured", t.simulate / exposures}};
     }
     for (const auto& [name, seconds] : record.stream->effect_seconds) json["effects_cpu_seconds"][name] = seconds;
+    if (record.plan != nullptr)
+      for (const PlannedEffect& effect : record.plan->effects)
+        if (effect.need.needed)
+          json["effects_predicted_seconds"][std::string(effect.effect->spec().name)] =
+              effect.seconds * static_cast<double>(record.scene->mission().simulation.exposures) *
+              record.scene->mission().telescope.simulated_cameras;
     json["images_written"] = record.stream->images_written;
     json["electrons_lost_by_blooming"] = record.stream->lost_electrons;
     json["pixels_clipped_by_adc"] = record.stream->clipped_pixels;

@@ -89,13 +89,16 @@ void combine_maps_kernel(const double* base, const float* const* maps, const flo
       sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[k]), hn::LoadU(d, maps[k] + i)));
     const auto lower = hn::PromoteTo(dd, hn::LowerHalf(half, sum));
     const auto upper = hn::PromoteTo(dd, hn::UpperHalf(half, sum));
-    hn::StoreU(hn::Add(hn::LoadU(dd, base + i), lower), dd, out + i);
-    hn::StoreU(hn::Add(hn::LoadU(dd, base + i + kDoubles), upper), dd, out + i + kDoubles);
+    // The larger of the two in this order leaves a NaN as it is.
+    const auto none = hn::Zero(dd);
+    hn::StoreU(hn::Max(none, hn::Add(hn::LoadU(dd, base + i), lower)), dd, out + i);
+    hn::StoreU(hn::Max(none, hn::Add(hn::LoadU(dd, base + i + kDoubles), upper)), dd, out + i + kDoubles);
   }
   for (; i < size; ++i) {
     float sum = 0.0F;
     for (std::size_t k = 0; k < count; ++k) sum = sum + weights[k] * maps[k][i];
-    out[i] = base[i] + static_cast<double>(sum);
+    const double value = base[i] + static_cast<double>(sum);
+    out[i] = 0.0 > value ? 0.0 : value;
   }
 }
 
@@ -174,7 +177,8 @@ void reference::combine_maps(std::span<const double> base, std::span<const float
   for (std::size_t i = 0; i < out.size(); ++i) {
     float sum = 0.0F;
     for (std::size_t k = 0; k < maps.size(); ++k) sum = sum + weights[k] * maps[k][i];
-    out[i] = base[i] + static_cast<double>(sum);
+    const double value = base[i] + static_cast<double>(sum);
+    out[i] = 0.0 > value ? 0.0 : value;
   }
 }
 

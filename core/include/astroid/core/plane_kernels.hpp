@@ -19,8 +19,9 @@ void add_values(std::span<double> values, std::span<const float> other);
 void multiply_values(std::span<double> values, std::span<const float> other);
 void scale_values(std::span<const double> values, double factor, std::span<double> out);
 
-/// out[i] = base[i] + (weights[0] maps[0][i] + weights[1] maps[1][i] + ...), the sum in brackets in single precision
-/// and in this order, the rest in double.
+/// out[i] = max(0, base[i] + (weights[0] maps[0][i] + weights[1] maps[1][i] + ...)), the sum in brackets in single
+/// precision and in this order, the rest in double. Light is not negative, which a polynomial does not know in the far
+/// wings of a saturated star.
 /// @param maps  weights.size() pointers to out.size() values each.
 void combine_maps(std::span<const double> base, std::span<const float* const> maps, std::span<const float> weights,
                   std::span<double> out);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "astroid/sim/attitude_polynomial.hpp"
+#include "astroid/sim/cost_factors.hpp"
 #include "astroid/sim/effect.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -42,6 +43,7 @@ struct PlanKnobs {
 struct PlannedEffect {
   const Effect* effect = nullptr;
   EffectNeed need;
+  double seconds = 0.0;  ///< predicted per exposure on one core; 0 when it is off or cached
 };
 
 /// How the error allowed by the accuracy is shared out, relative to a target's flux tolerance.
@@ -80,7 +82,11 @@ struct Plan {
 Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch);
 
 /// Decides everything from the scene and the accuracy asked for.
-Plan make_plan(const Scene& scene);
+/// @param costs  of this machine, for the predicted times.
+Plan make_plan(const Scene& scene, const CostFactors& costs = {});
+
+/// What of CostFactors an effect's time belongs to: its name, or how the plan makes the noiseless image.
+std::string cost_part(const PlannedEffect& effect, const Plan& plan);
 
 /// The plan as an explanation to a colleague (plan.txt) and as data (plan.json).
 std::string to_text(const Plan& plan, const Scene& scene);

@@ -1,0 +1,83 @@
+#include "standard_scenes.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "astroid/core/distributions.hpp"
+#include "astroid/core/random.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr int kSide = 512;  // px
+
+/// Stars of 2e3 to 1e6 e- at random places, the number of them inverse to their light.
+StarCatalogue random_stars(std::size_t count) {
+  constexpr double kFaintest = 2e3;
+  constexpr double kBrightest = 1e6;
+  constexpr double kSlope = -1.0;  // of electrons against rank
+  StarCatalogue catalogue;
+  catalogue.source = "standard scene";
+  catalogue.passband = "P";
+  catalogue.positions = PositionKind::kPixel;
+  catalogue.brightness = BrightnessKind::kElectrons;
+  const RandomStream stream = make_stream(1, StreamId{0}, 0, 0);
+  const auto uniform = [&](std::size_t star, std::uint32_t axis) {
+    return uniform_at_step(stream, {.step = star, .axis = axis});
+  };
+  for (std::size_t i = 0; i < count; ++i) {
+    CatalogueStar star;
+    star.id = "star" + std::to_string(i + 1);
+    star.pixel = {kSide * uniform(i, 0) - 0.5, kSide * uniform(i, 1) - 0.5};
+    star.electrons = std::min(kBrightest, kFaintest * std::pow(uniform(i, 2), kSlope));
+    star.colour = star.teff = std::numeric_limits<double>::quiet_NaN();
+    catalogue.stars.push_back(star);
+  }
+  return catalogue;
+}
+
+/// A PLATO camera with what every run has.
+Mission camera() {
+  Mission m;
+  m.simulation.exposures = 200;
+  m.telescope.cameras = 24;
+  m.field.sky_background = ElectronsPerSecond(45.0);
+  m.ccd.columns = m.ccd.rows = kSide;
+  m.ccd.axis_x = m.ccd.axis_y = 0.5 * (kSide - 1);
+  m.ccd.dark_current = ElectronsPerSecond(1.2);
+  m.ccd.dsnu = 0.15;
+  m.ccd.prnu = 0.01;
+  m.ccd.readout_noise = Electrons(50.2);
+  m.ccd.gain = Gain(25.0);
+  m.ccd.bias = Adu(1000.0);
+  return m;
+}
+
+void jitter(Mission& m, double arcsec) {
+  m.satellite.jitter.model = JitterModel::kRedNoise;
+  m.satellite.jitter.yaw = m.satellite.jitter.pitch = m.satellite.jitter.roll = Arcseconds(arcsec);
+}
+
+}  // namespace
+
+std::vector<StandardScene> standard_scenes() {
+  constexpr std::size_t kFew = 600;
+  constexpr std::size_t kMany = 12000;
+  std::vector<StandardScene> scenes;
+  const auto add = [&](const char* name, std::size_t stars) -> Mission& {
+    scenes.push_back({.name = name, .mission = camera(), .catalogue = random_stars(stars)});
+    return scenes.back().mission;
+  };
+  jitter(add("stars of a moving camera, Gaussian PSF", kFew), 0.04);
+  jitter(add("a crowd, as a polynomial in the attitude", kMany), 0.04);
+  add("a still image", kFew);
+  {
+    Mission& m = add("saturation", kFew);
+    jitter(m, 0.04);
+    m.ccd.full_well = Electrons(2e5);
+  }
+  return scenes;
+}
+
+}  // namespace astroid

@@ -1,0 +1,137 @@
+// Random combinations of effects, sizes and scenes: whatever is combined, nothing is NaN, no expectation is negative,
+// and what ran is what the plan says.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "astroid/sim/simulator.hpp"
+#include "astroid/test/scenes.hpp"
+
+namespace astroid {
+namespace {
+
+constexpr int kCombinations = 240;
+
+/// One choice of a combination.
+struct Switch {
+  const char* name;
+  std::function<void(Mission&)> set;
+};
+
+std::vector<Switch> switches() {
+  return {
+      {"sky", [](Mission& m) { m.field.sky_background = ElectronsPerSecond(45.0); }},
+      {"dark", [](Mission& m) { m.ccd.dark_current = ElectronsPerSecond(1.2); }},
+      {"DSNU", [](Mission& m) { m.ccd.dsnu = 0.6; }},
+      {"PRNU", [](Mission& m) { m.ccd.prnu = 0.3; }},
+      {"readout noise", [](Mission& m) { m.ccd.readout_noise = Electrons(50.2); }},
+      {"gain", [](Mission& m) { m.ccd.gain = Gain(25.0); }},
+      {"bias", [](Mission& m) { m.ccd.bias = Adu(1000.0); }},
+      {"few bits", [](Mission& m) { m.ccd.adc_bits = 12; }},
+      {"full well", [](Mission& m) { m.ccd.full_well = Electrons(90000.0); }},
+      {"no blooming", [](Mission& m) { m.ccd.blooming = false; }},
+      {"jitter",
+       [](Mission& m) {
+         m.satellite.jitter.model = JitterModel::kRedNoise;
+         m.satellite.jitter.yaw = m.satellite.jitter.pitch = Arcseconds(0.04);
+       }},
+      {"strong jitter",
+       [](Mission& m) {
+         m.satellite.jitter.model = JitterModel::kRedNoise;
+         m.satellite.jitter.yaw = m.satellite.jitter.roll = Arcseconds(6.0);
+         m.satellite.jitter.timescale = Seconds(3.0);
+       }},
+      {"narrow PSF", [](Mission& m) { m.psf.sigma = Pixels(0.05); }},
+      {"wide PSF", [](Mission& m) { m.psf.sigma = Pixels(4.5); }},
+      {"rough", [](Mission& m) { m.simulation.accuracy = Ppm(10000.0); }},
+      {"exact", [](Mission& m) { m.simulation.accuracy = Ppm(0.01); }},
+      {"windows", [](Mission& m) { m.ccd.window = 7; }},
+      {"sub-field",
+       [](Mission& m) {
+         m.ccd.has_sub_field = true;
+         m.ccd.sub_x0 = m.ccd.columns / 4;
+         m.ccd.sub_y0 = m.ccd.rows / 3;
+         m.ccd.sub_columns = std::max(1, m.ccd.columns / 2);
+         m.ccd.sub_rows = std::max(1, m.ccd.rows / 2);
+       }},
+  };
+}
+
+struct Combination {
+  Mission mission;
+  std::vector<test::LabStar> stars;
+  std::string name;
+};
+
+Combination combination(std::uint32_t number) {
+  std::mt19937 random(number);
+  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const auto side = [&] { return static_cast<int>(std::exp(uniform(0.0, std::log(90.0)))); };
+  Combination c{.mission = test::bare_mission(side() + 8, side() + 8), .stars = {}, .name = {}};
+  c.mission.simulation.seed = number;
+  for (const Switch& s : switches())
+    if (uniform(0.0, 1.0) < 0.35) {
+      s.set(c.mission);
+      c.name += std::string(c.name.empty() ? "" : ", ") + s.name;
+    }
+  const auto count = static_cast<int>(std::exp(uniform(0.0, std::log(60.0))));
+  for (int i = 0; i < count; ++i)
+    c.stars.push_back({uniform(-3.0, c.mission.ccd.columns + 3.0), uniform(-3.0, c.mission.ccd.rows + 3.0),
+                       std::pow(10.0, uniform(0.0, 8.0))});
+  // One star that every sub-field and window has.
+  c.stars.push_back({0.5 * c.mission.ccd.columns, 0.5 * c.mission.ccd.rows, 1e5});
+  return c;
+}
+
+TEST(EffectMatrix, NoCombinationGoesWrong) {
+  std::set<std::string> ever;
+  int exposures = 0;
+  for (std::uint32_t number = 0; number < kCombinations; ++number) {
+    const Combination c = combination(number);
+    SCOPED_TRACE("combination " + std::to_string(number) + ": " + c.name);
+    const auto scene = std::make_shared<const Scene>(c.mission, test::lab_catalogue(c.stars));
+    const auto plan = std::make_shared<const Plan>(make_plan(*scene));
+    const Simulator simulator(scene, plan, 0);
+    ExposureState state = simulator.make_state();
+    simulator.expect(1, state);
+    for (const double value : std::as_const(state.expected).whole().pixels())
+      ASSERT_TRUE(value >= 0.0 && std::isfinite(value)) << value;
+    std::set<std::string> ran;
+    ExposureState seen = simulator.make_state();
+    simulator.simulate(1, seen, [&](const EffectSpec& effect, const ExposureState& s) {
+      ran.emplace(effect.name);
+      if (effect.level != EffectLevel::kPixelSample) return;
+      const auto bad = [](double value) { return !std::isfinite(value); };
+      EXPECT_FALSE(std::ranges::any_of(s.sampled.whole().pixels(), bad)) << effect.name;
+    });
+    for (const PlannedEffect& planned : plan->effects) {
+      const std::string name(planned.effect->spec().name);
+      ASSERT_EQ(ran.contains(name), planned.need.needed) << name;
+      ASSERT_FALSE(planned.need.why.empty()) << name;
+      ASSERT_TRUE(planned.need.bias_bound >= 0.0 && planned.need.variance_bound >= 0.0) << name;
+      if (planned.need.needed) ever.insert(name);
+    }
+    ExposureState state2 = simulator.make_state();
+    simulator.simulate(1, state2);
+    const double top = std::ldexp(1.0, c.mission.ccd.adc_bits) - 1.0;
+    const auto pixels = std::as_const(state2.frame.pixels).pixels();
+    for (std::size_t i = 0; i < pixels.size(); ++i) {
+      ASSERT_TRUE(pixels[i] >= 0.0F && static_cast<double>(pixels[i]) <= top) << pixels[i];
+      ASSERT_EQ(pixels[i], std::as_const(seen.frame.pixels).pixels()[i]) << "looking changes pixel " << i;
+    }
+    ++exposures;
+  }
+  EXPECT_EQ(exposures, kCombinations);
+  std::printf("%d combinations, %zu effects ran in some of them\n", exposures, ever.size());
+}
+
+}  // namespace
+}  // namespace astroid
