@@ -7,6 +7,7 @@
 #include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/throughput.hpp"
 
 namespace astroid {
 
@@ -42,6 +43,7 @@ std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& p
     BudgetRow row;
     row.mag = magnitude;
     row.electrons =
+        mean_throughput(mission) *
         (electron_rate(Magnitude(magnitude), mission.telescope.zero_point) * mission.simulation.exposure_time).value();
     row.peak_electrons = row.electrons * peak;
     row.saturated = row.peak_electrons + background >= saturation_electrons(mission);

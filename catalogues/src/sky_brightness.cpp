@@ -14,6 +14,7 @@
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
 #include "astroid/core/sphere.hpp"
+#include "astroid/core/throughput.hpp"
 
 namespace astroid {
 
@@ -136,7 +137,7 @@ ElectronsPerSecond mean_background_rate(const Mission& mission) {
   const SkyPosition axis{mission.satellite.ra.value(), mission.satellite.dec.value()};
   const ElectronsPerSecond sky = sky_rate(mission, constant ? ElectronsPerSecond(0.0) : rate_of_one_s10(mission), axis,
                                           middle_of_run(mission.simulation));
-  return sky + mission.field.stray_light.level;
+  return mean_throughput(mission) * (sky + mission.field.stray_light.level);
 }
 
 PixelNoise expected_pixel_noise(const Mission& mission) {

@@ -166,6 +166,25 @@ void check_photometry(const Mission& m, Checker& checker) {
                   "larger than the window around the target", fmt::format("at most CCD/Window ({} px)", m.ccd.window));
 }
 
+void check_optics(const Mission& m, Checker& checker) {
+  const DistortionSettings& distortion = m.telescope.distortion;
+  const auto check_count = [&](std::size_t count, std::size_t most, std::string_view path) {
+    checker.require(count <= most, path, "", fmt::format("{} coefficients", count), fmt::format("at most {}", most));
+  };
+  constexpr std::size_t kRadial = 3;
+  check_count(distortion.radial.size(), kRadial, "Telescope/Distortion/Radial");
+  check_count(distortion.tangential.size(), 2, "Telescope/Distortion/Tangential");
+  check_count(distortion.prism.size(), 2, "Telescope/Distortion/Prism");
+  checker.require(distortion.model != DistortionModel::kSip || !distortion.file.empty(), "Telescope/Distortion/File",
+                  "Telescope/Distortion/model", "is missing", "the name of a readable file, since the model is sip");
+  checker.require(
+      m.telescope.vignetting.model != VignettingModel::kPolynomial || !m.telescope.vignetting.polynomial.empty(),
+      "Telescope/Vignetting/Polynomial", "Telescope/Vignetting/model", "is missing",
+      "coefficients, since the model is polynomial");
+  checker.require(m.psf.model != PsfModel::kField || !m.psf.file.empty(), "PSF/File", "PSF/Model", "is missing",
+                  "the name of a readable file, since the model is field");
+}
+
 }  // namespace
 
 void check_together(const Mission& mission, Draft& draft) {
@@ -177,6 +196,7 @@ void check_together(const Mission& mission, Draft& draft) {
   check_readout(mission, checker);
   check_calibration(mission, checker);
   check_photometry(mission, checker);
+  check_optics(mission, checker);
   checker.require(mission.telescope.simulated_cameras <= mission.telescope.cameras, "Telescope/SimulatedCameras",
                   "Telescope/Cameras", "more than there are",
                   fmt::format("at most Cameras ({})", mission.telescope.cameras));

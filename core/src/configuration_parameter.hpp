@@ -96,6 +96,7 @@ std::vector<Parameter> satellite_parameters();
 std::vector<Parameter> motion_parameters();
 std::vector<Parameter> telescope_parameters();
 std::vector<Parameter> renderer_parameters();
+std::vector<Parameter> optics_parameters();
 std::vector<Parameter> psf_parameters();
 std::vector<Parameter> intra_pixel_parameters();
 std::vector<Parameter> stellar_field_parameters();

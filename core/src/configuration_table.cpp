@@ -21,8 +21,13 @@ constexpr std::array kSections = {
     Section{"Satellite/Drift", "Slow motion of the line of sight."},
     Section{"Satellite/Repointing", "Errors of pointing the spacecraft anew each quarter."},
     Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
+    Section{"Telescope/Ageing", "How the optics lose throughput over the years."},
+    Section{"Telescope/Distortion", "How positions depart from those of a perfect camera."},
+    Section{"Telescope/Vignetting", "How stars, sky and stray light fade away from the optical axis."},
+    Section{"Telescope/Ghosts", "Reflections of bright stars, on the other side of the optical axis."},
     Section{"PSF", "The image of a star."},
     Section{"PSF/IntraPixel", "Sensitivity within a pixel, relative to the pixel's mean."},
+    Section{"PSF/Breathing", "How the width of the PSF follows the temperature."},
     Section{"StellarField", "The stars and the sky behind them."},
     Section{"StellarField/StrayLight", "Light in every pixel that comes from outside the field."},
     Section{"CCD", "The detector and its electronics."},
@@ -51,10 +56,11 @@ constexpr std::array kSections = {
 
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
-  for (auto part : {simulation_parameters, renderer_parameters, satellite_parameters, motion_parameters,
-                    telescope_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters,
-                    sky_parameters, ccd_parameters, pixel_effect_parameters, readout_parameters, cmos_parameters,
-                    photometry_parameters, analysis_parameters, output_parameters}) {
+  for (auto part :
+       {simulation_parameters, renderer_parameters, satellite_parameters, motion_parameters, telescope_parameters,
+        optics_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters, sky_parameters,
+        ccd_parameters, pixel_effect_parameters, readout_parameters, cmos_parameters, photometry_parameters,
+        analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

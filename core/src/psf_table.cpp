@@ -78,12 +78,11 @@ class TableHeader {
 
 }  // namespace
 
-PsfTable read_psf_table(const std::string& path) {
-  const FitsReader fits(path);
-  const int unit = fits.first_image();
+namespace {
+
+PsfTable read_table(const FitsReader& fits, int unit, TableHeader& header) {
   PsfTable table;
   table.samples = fits.read_image<double, unit::Relative>(unit);
-  TableHeader header(fits, unit);
   table.samples_per_pixel = header.samples_per_pixel();
   table.centre_x = header.centre("CRPIX1", table.samples.nx());
   table.centre_y = header.centre("CRPIX2", table.samples.ny());
@@ -92,8 +91,41 @@ PsfTable read_psf_table(const std::string& path) {
   if (bad > 0) {
     header.refuse("image", fmt::format("{} samples", bad), "finite samples", "the PSF table has holes");
   }
+  return table;
+}
+
+}  // namespace
+
+PsfTable read_psf_table(const std::string& path) {
+  const FitsReader fits(path);
+  const int unit = fits.first_image();
+  TableHeader header(fits, unit);
+  PsfTable table = read_table(fits, unit, header);
   header.throw_problems();
   return table;
+}
+
+std::vector<FieldPsfTable> read_field_psf(const std::string& path) {
+  const FitsReader fits(path);
+  static_cast<void>(fits.first_image());  // says what is wrong with a file that has none
+  std::vector<FieldPsfTable> tables;
+  for (std::size_t i = 0; i < fits.units().size(); ++i) {
+    const FitsUnit& unit = fits.units()[i];
+    if (unit.axes.size() != 2) continue;
+    const int number = static_cast<int>(i) + 1;
+    TableHeader header(fits, number);
+    FieldPsfTable table{.position = {}, .table = read_table(fits, number, header)};
+    for (const char* key : {"FIELDX", "FIELDY"}) {
+      const auto value = fits.number(number, key);
+      if (!value)
+        header.refuse(key, "", "the table's place on the detector, 0-based pixels",
+                      fmt::format("image {} of the PSF file has no place", number));
+      (key[5] == 'X' ? table.position.x : table.position.y) = value.value_or(0.0);
+    }
+    header.throw_problems();
+    tables.push_back(std::move(table));
+  }
+  return tables;
 }
 
 }  // namespace astroid

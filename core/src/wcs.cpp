@@ -82,6 +82,7 @@ void check_pointing(const CameraPointing& p) {
   if (!std::isfinite(p.axis_pixel.x) || !std::isfinite(p.axis_pixel.y)) {
     refuse("pixel of the axis", fmt::format("({}, {})", p.axis_pixel.x, p.axis_pixel.y), "two pixel coordinates");
   }
+  if (p.distortion != nullptr && p.detector.empty()) refuse("detector", "0 px", "the pixels that headers describe");
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
@@ -90,6 +91,22 @@ std::array<double, 4> cd_matrix(const CameraPointing& p) {
   const double scale = to_degrees(Pixels(1.0) * p.scale).value();
   const SineCosine roll = sine_cosine(p.roll);
   return {-scale * roll.cosine, -scale * roll.sine, -scale * roll.sine, scale * roll.cosine};
+}
+
+void append_sip(const SipFit& fit, std::vector<FitsCard>& cards) {
+  const SipPolynomial& sip = fit.polynomial;
+  const std::string comment =
+      fit.worst > 0.0 ? fmt::format("within {:.1g} px of the simulated distortion", fit.worst) : "distortion, exact";
+  for (const char side : {'A', 'B'}) {
+    cards.emplace_back(fmt::format("{}_ORDER", side), sip.order, comment);
+    const std::vector<double>& coefficients = side == 'A' ? sip.a : sip.b;
+    for (int i = 0; i <= sip.order; ++i) {
+      for (int j = 0; i + j <= sip.order; ++j) {
+        const double value = coefficients[sip.index(i, j)];
+        if (value != 0.0) cards.emplace_back(fmt::format("{}_{}_{}", side, i, j), value);
+      }
+    }
+  }
 }
 
 WcsPointer make_wcs(const CameraPointing& p) {
@@ -159,6 +176,7 @@ struct SkyProjection::State {
   PixelScale scale{};
   std::string code{};
   CameraFrame frame{};
+  std::optional<SipFit> header_distortion{};  // nothing: none, or none that is good enough
 
   State(WcsPointer wcs, std::optional<CameraPointing> p) : engine(std::move(wcs)), pointing(std::move(p)) {
     const wcsprm& w = engine.wcs();
@@ -173,6 +191,7 @@ struct SkyProjection::State {
       axis_pixel = pointing->axis_pixel;
       scale = pointing->scale;
       set_frame(cd_matrix(*pointing));
+      set_header_distortion();
     } else {
       measure_frame();
     }
@@ -188,6 +207,29 @@ struct SkyProjection::State {
     frame.x = unit_vector(combine(cd[0], east, cd[2], north));
     const Direction y = combine(cd[1], east, cd[3], north);
     frame.y = unit_vector(combine(1.0, y, -dot(y, frame.x), frame.x));
+  }
+
+  void set_header_distortion() {
+    constexpr double kAim = 1e-5;  // px; a higher order is worth its cards until then
+    if (pointing->distortion == nullptr) return;
+    const Distortion& distortion = *pointing->distortion;
+    if (const SipPolynomial* sip = distortion.sip()) {
+      header_distortion = SipFit{.polynomial = *sip, .worst = 0.0};
+    } else {
+      header_distortion = fit_sip(distortion, pointing->detector, axis_pixel, kAim);
+      if (header_distortion && header_distortion->worst > kHeaderTolerance) header_distortion.reset();
+    }
+  }
+
+  // Between a perfect camera and the real one; NaN where there is no image.
+  [[nodiscard]] PixelPosition distorted(PixelPosition ideal) const { return moved(ideal, &Distortion::distort); }
+  [[nodiscard]] PixelPosition undistorted(PixelPosition real) const { return moved(real, &Distortion::undistort); }
+  [[nodiscard]] PixelPosition moved(PixelPosition p,
+                                    std::optional<PixelShift> (Distortion::*map)(PixelShift) const) const {
+    constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+    if (!pointing || pointing->distortion == nullptr) return p;
+    const auto offset = (*pointing->distortion.*map)({p.x - axis_pixel.x, p.y - axis_pixel.y});
+    return offset ? PixelPosition{axis_pixel.x + offset->dx, axis_pixel.y + offset->dy} : PixelPosition{kNan, kNan};
   }
 
   // For a WCS from a header, whatever its distortions and pole: the matrix by differences over one pixel.
@@ -222,14 +264,18 @@ struct SkyProjection::State {
                  !(angular_separation(axis, p).value() < reach)) {
         pixels[i] = {kNan, kNan};
       } else {
-        pixels[i] = {pixels[i].x - 1.0, pixels[i].y - 1.0};
+        pixels[i] = distorted({pixels[i].x - 1.0, pixels[i].y - 1.0});
       }
     }
   }
 
   [[nodiscard]] SkyPosition to_sky(PixelPosition position) const {
     if (position.x == axis_pixel.x && position.y == axis_pixel.y && pointing) return axis;
-    const SkyPosition world = engine.to_world({position.x + 1.0, position.y + 1.0});
+    const PixelPosition ideal = undistorted(position);
+    if (!std::isfinite(ideal.x) || !std::isfinite(ideal.y)) {
+      return {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
+    }
+    const SkyPosition world = engine.to_world({ideal.x + 1.0, ideal.y + 1.0});
     if (galactic) return galactic_to_icrs(world);
     return {wrap_degrees(world.ra), world.dec};
   }
@@ -374,6 +420,23 @@ std::optional<AttitudeJacobian> SkyProjection::attitude_jacobian(SkyPosition pos
                           .dy_droll = rounded(derivative[2].y)};
 }
 
+std::optional<Degrees> SkyProjection::field_angle(PixelPosition position) const {
+  if (!state_->pointing) throw BugError("SkyProjection: the field angle of a projection that came from a header");
+  const PixelPosition ideal = state_->undistorted(position);
+  const PixelPosition axis = state_->axis_pixel;
+  const double r =
+      det::hypot(ideal.x - axis.x, ideal.y - axis.y) * to_radians(to_degrees(Pixels(1.0) * state_->scale)).value();
+  if (!std::isfinite(r)) return std::nullopt;
+  const std::string& code = state_->code;
+  double angle = r;  // ARC
+  if (code == "TAN") angle = det::atan(r);
+  if (code == "SIN") angle = det::asin(r);
+  if (code == "STG") angle = 2.0 * det::atan(0.5 * r);
+  if (code == "ZEA") angle = 2.0 * det::asin(0.5 * r);
+  if (!(angle < kPi)) return std::nullopt;  // NaN beyond the edge of SIN and ZEA
+  return to_degrees(Radians(angle));
+}
+
 PixelPosition SkyProjection::axis_pixel() const {
   return state_->axis_pixel;
 }
@@ -390,22 +453,27 @@ const std::string& SkyProjection::code() const {
 std::vector<FitsCard> SkyProjection::fits_cards(int x0, int y0) const {
   if (!state_->pointing) throw BugError("SkyProjection: keywords of a projection that came from a header");
   const CameraPointing& p = *state_->pointing;
+  const std::optional<SipFit>& distortion = state_->header_distortion;
+  if (p.distortion != nullptr && !distortion) return {};
   const std::array<double, 4> cd = cd_matrix(p);
-  return {{"WCSAXES", 2, "number of world coordinate axes"},
-          {"CTYPE1", "RA---" + p.projection, "right ascension"},
-          {"CTYPE2", "DEC--" + p.projection, "declination"},
-          {"CUNIT1", "deg"},
-          {"CUNIT2", "deg"},
-          {"CRPIX1", p.axis_pixel.x - x0 + 1.0, "optical axis, first pixel centre at 1"},
-          {"CRPIX2", p.axis_pixel.y - y0 + 1.0, "optical axis, first pixel centre at 1"},
-          {"CRVAL1", state_->axis.ra, "[deg] optical axis"},
-          {"CRVAL2", state_->axis.dec, "[deg] optical axis"},
-          {"CD1_1", cd[0], "[deg/px]"},
-          {"CD1_2", cd[1], "[deg/px]"},
-          {"CD2_1", cd[2], "[deg/px]"},
-          {"CD2_2", cd[3], "[deg/px]"},
-          {"LONPOLE", 180.0, "[deg] native longitude of the celestial pole"},
-          {"RADESYS", "ICRS", "reference system"}};
+  const std::string suffix = p.projection + (distortion ? "-SIP" : "");
+  std::vector<FitsCard> cards = {{"WCSAXES", 2, "number of world coordinate axes"},
+                                 {"CTYPE1", "RA---" + suffix, "right ascension"},
+                                 {"CTYPE2", "DEC--" + suffix, "declination"},
+                                 {"CUNIT1", "deg"},
+                                 {"CUNIT2", "deg"},
+                                 {"CRPIX1", p.axis_pixel.x - x0 + 1.0, "optical axis, first pixel centre at 1"},
+                                 {"CRPIX2", p.axis_pixel.y - y0 + 1.0, "optical axis, first pixel centre at 1"},
+                                 {"CRVAL1", state_->axis.ra, "[deg] optical axis"},
+                                 {"CRVAL2", state_->axis.dec, "[deg] optical axis"},
+                                 {"CD1_1", cd[0], "[deg/px]"},
+                                 {"CD1_2", cd[1], "[deg/px]"},
+                                 {"CD2_1", cd[2], "[deg/px]"},
+                                 {"CD2_2", cd[3], "[deg/px]"},
+                                 {"LONPOLE", 180.0, "[deg] native longitude of the celestial pole"},
+                                 {"RADESYS", "ICRS", "reference system"}};
+  if (distortion) append_sip(*distortion, cards);
+  return cards;
 }
 
 }  // namespace astroid

@@ -40,6 +40,7 @@ void check_settings(const PixelLayout& layout, const GroundModel& model, const P
     complain("CCD/Columns", fmt::format("{} pixels", layout.size()), "fewer than 2^32 pixels",
              "the frame is too large");
   if (!problems.empty()) throw InputError(std::move(problems));
+  if (!model.backgrounds.empty()) ASTROID_CHECK_EQ(model.backgrounds.size(), model.targets.size());
   if (model.psf == nullptr) throw BugError("build_estimators: the ground model has no PSF");
 }
 
@@ -56,6 +57,7 @@ std::vector<StarEstimator> build_estimators(const PixelLayout& layout, const Gro
   for (std::size_t i = 0; i < model.targets.size(); ++i) {
     const std::span<const std::size_t> neighbours(overlaps.star.data() + overlaps.first[i],
                                                   overlaps.first[i + 1] - overlaps.first[i]);
+    if (!model.backgrounds.empty()) builder.set_background(model.backgrounds[i]);
     estimators.push_back(builder.build(model.targets[i], windows[i], neighbours));
   }
   return estimators;

@@ -73,7 +73,7 @@ void StarEstimatorBuilder::add_calibration_noise(StarEstimator& estimator) {
   budget.smearing = 0.0;
   budget.bias_weight = 0.0;
   budget.var_bias += common * model_.row_offset_variance / smearing.overscan_rows;
-  const PixelNoise& noise = model_.noise;
+  const PixelNoise& noise = noise_;
   const double electronics = noise.readout * noise.readout + noise.quantisation * noise.quantisation;
   for (std::size_t column = 0; column < column_weights_.size(); ++column) {
     const double weight = column_weights_[column];

@@ -8,8 +8,8 @@
 namespace astroid::detail {
 
 const std::vector<double>& StarEstimatorBuilder::couple_weights(const Rectangle& window) {
-  const double side = model_.noise.side_coupling;
-  const double corner = model_.noise.corner_coupling;
+  const double side = noise_.side_coupling;
+  const double corner = noise_.corner_coupling;
   if (side <= 0.0 && corner <= 0.0) return weights_;
   coupled_weights_.assign(weights_.size(), 0.0);
   const double own = 1.0 - 4.0 * (side + corner);
@@ -29,7 +29,7 @@ const std::vector<double>& StarEstimatorBuilder::couple_weights(const Rectangle&
 }
 
 void StarEstimatorBuilder::add_pattern_noise(const Rectangle& window, StarEstimator& estimator) {
-  const PixelNoise& noise = model_.noise;
+  const PixelNoise& noise = noise_;
   if (noise.column <= 0.0 && noise.row <= 0.0) return;
   const Rectangle& region = layout_.regions()[estimator.region];
   const auto width = static_cast<std::size_t>(region.nx);

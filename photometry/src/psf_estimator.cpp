@@ -33,7 +33,7 @@ bool StarEstimatorBuilder::choose_psf_weights(const FieldStar& star, const Recta
   doubt_motion();
   std::vector<double>& variance = scratch_;
   variance.resize(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) variance[i] = model_.noise.variance(total_[i]);
+  for (std::size_t i = 0; i < pixels; ++i) variance[i] = noise_.variance(total_[i]);
   // In units of the believed flux, so that what follows is of order one.
   weights_.resize(pixels);
   fractions_.resize(pixels);

@@ -67,6 +67,7 @@ StarEstimatorBuilder::StarEstimatorBuilder(const PixelLayout& layout, const Grou
     : layout_(layout),
       model_(model),
       settings_(settings),
+      noise_(model.noise),
       stamps_(star_stamps(model, settings)),
       regions_(layout.regions()),
       fits_psf_(settings.method == PhotometryMethod::kPsf) {
@@ -163,14 +164,14 @@ bool StarEstimatorBuilder::choose_weights(const FieldStar& star, const Rectangle
       aperture_overlap(star.position, settings_.aperture_radius.value(), window, weights_);
       return true;
     case PhotometryMethod::kMask: {
-      const std::vector<std::size_t> mask = optimal_binary_mask(target_, total_, model_.noise);
+      const std::vector<std::size_t> mask = optimal_binary_mask(target_, total_, noise_);
       for (const std::size_t pixel : mask) weights_[pixel] = 1.0;
       return !mask.empty();
     }
     case PhotometryMethod::kWeighted: {
       double sum = 0.0;
       for (std::size_t i = 0; i < weights_.size(); ++i) {
-        const double variance = model_.noise.variance(total_[i]);
+        const double variance = noise_.variance(total_[i]);
         weights_[i] = target_[i] > 0.0 ? target_[i] / variance : 0.0;
         sum += weights_[i];
       }
@@ -223,7 +224,7 @@ void StarEstimatorBuilder::cut_at_edges(const FieldStar& star, const Rectangle& 
 }
 
 void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& estimator) {
-  const PixelNoise& noise = model_.noise;
+  const PixelNoise& noise = noise_;
   const double electrons = model_.stars[estimator.star].electrons;
   EstimatorBudget& budget = estimator.budget;
   double squares = 0.0;
@@ -263,7 +264,7 @@ void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& e
 void StarEstimatorBuilder::add_background(const FieldStar& star, const Rectangle& window, StarEstimator& estimator) {
   double weight_sum = 0.0;
   for (const EstimatorTerm& term : estimator.terms) weight_sum += static_cast<double>(term.weight);
-  estimator.known_background = model_.noise.background * weight_sum + estimator.offset;
+  estimator.known_background = noise_.background * weight_sum + estimator.offset;
   switch (settings_.background) {
     case BackgroundMethod::kMesh:
       estimator.known_background = 0.0;
@@ -326,14 +327,14 @@ void StarEstimatorBuilder::choose_annulus(const FieldStar& star, const Rectangle
     star_light += light[found_[k]];
     const auto count = static_cast<double>(k + 1);
     const double doubt = model_.flux_doubt * star_light / count;
-    const double error = model_.noise.variance(star_light / count) / count + doubt * doubt;
+    const double error = noise_.variance(star_light / count) / count + doubt * doubt;
     if (k + 1 < kFewestBackgroundPixels || error >= best_error) continue;
     best_error = error;
     best_count = k + 1;
     annulus_.star_light = star_light;
     annulus_.doubt = doubt;
   }
-  const double noise_variance = model_.noise.variance();
+  const double noise_variance = noise_.variance();
   const double worst = kWorstBackgroundError * kWorstBackgroundError * noise_variance;
   annulus_.usable = best_count > 0 && (best_error <= worst || !(noise_variance > 0.0));
   annulus_.error = std::sqrt(best_error);
@@ -348,8 +349,7 @@ void StarEstimatorBuilder::add_local_background(double weight_sum, StarEstimator
   estimator.offset += -weight_sum * annulus_.star_light / count;
   estimator.budget.var_background_estimate =
       (weight_sum / count) * (weight_sum / count) *
-      (count * model_.noise.variance() +
-       model_.noise.factors(annulus_.star_light / count).photon * annulus_.star_light);
+      (count * noise_.variance() + noise_.factors(annulus_.star_light / count).photon * annulus_.star_light);
 }
 
 void StarEstimatorBuilder::differentiate(std::size_t star, const Rectangle& box,

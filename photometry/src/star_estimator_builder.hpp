@@ -42,6 +42,9 @@ class StarEstimatorBuilder {
   /// @param neighbours  indices of stars whose stamps touch the window, ascending; may include the target.
   [[nodiscard]] StarEstimator build(std::size_t star, const Rectangle& window, std::span<const std::size_t> neighbours);
 
+  /// Of the targets that are built from now on, e- per pixel.
+  void set_background(double background) { noise_.background = background; }
+
   [[nodiscard]] std::span<const Rectangle> stamps() const { return stamps_; }
 
  private:
@@ -75,6 +78,7 @@ class StarEstimatorBuilder {
   const PixelLayout& layout_;
   const GroundModel& model_;
   const PhotometrySettings& settings_;
+  PixelNoise noise_;  // at the target at hand
   std::vector<Rectangle> stamps_;
   CellGrid regions_;
   bool fits_psf_;

@@ -4,6 +4,7 @@
 #include "effects/bad_pixels.hpp"
 #include "effects/bias.hpp"
 #include "effects/bias_drift.hpp"
+#include "effects/breathing.hpp"
 #include "effects/brighter_fatter.hpp"
 #include "effects/charge_injection.hpp"
 #include "effects/cosmic_rays.hpp"
@@ -14,6 +15,7 @@
 #include "effects/flat_field.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
+#include "effects/ghosts.hpp"
 #include "effects/intra_pixel_response.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
@@ -28,7 +30,9 @@
 #include "effects/stars.hpp"
 #include "effects/stray_light.hpp"
 #include "effects/sub_pixel_stars.hpp"
+#include "effects/throughput.hpp"
 #include "effects/variable_stars.hpp"
+#include "effects/vignetting.hpp"
 #include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
@@ -38,10 +42,10 @@ namespace {
 using CcdTable =
     EffectTable<ProperMotionEffect,                                                                    // Catalogue
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                Stars, SubPixelStars, VariableStars,                                                   // Optics
+                Throughput, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,                    // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
                 IntraPixelResponse,                                                                    // SubPixel
-                FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, ChargeInjection, OpenShutterSmearing,
+                Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, ChargeInjection, OpenShutterSmearing,
                 FrameTransferSmearing,                                   // PixelMean
                 PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,  // PixelSample
                 ReadoutNoise, GainEffect, CrossTalk, NonLinearity, BiasEffect, BiasDrift, RowOffset, BadPixelMap,

@@ -3,12 +3,14 @@
 #include "effects/adc.hpp"
 #include "effects/bad_pixels.hpp"
 #include "effects/bias.hpp"
+#include "effects/breathing.hpp"
 #include "effects/column_noise.hpp"
 #include "effects/cosmic_rays.hpp"
 #include "effects/dark_current.hpp"
 #include "effects/drift.hpp"
 #include "effects/flat_field.hpp"
 #include "effects/gain.hpp"
+#include "effects/ghosts.hpp"
 #include "effects/inter_pixel_capacitance.hpp"
 #include "effects/intra_pixel_response.hpp"
 #include "effects/jitter_file.hpp"
@@ -29,7 +31,9 @@
 #include "effects/stray_light.hpp"
 #include "effects/sub_pixel_stars.hpp"
 #include "effects/telegraph_pixels.hpp"
+#include "effects/throughput.hpp"
 #include "effects/variable_stars.hpp"
+#include "effects/vignetting.hpp"
 #include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
@@ -40,10 +44,10 @@ namespace {
 using CmosTable =
     EffectTable<ProperMotionEffect,                                                                    // Catalogue
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                Stars, SubPixelStars, VariableStars,                                                   // Optics
+                Throughput, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,                    // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
                 IntraPixelResponse,                                                                    // SubPixel
-                FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,                  // PixelMean
+                Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,      // PixelMean
                 PhotonNoise, CosmicRays, PixelSaturation,                                              // PixelSample
                 GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise, BiasEffect,
                 PixelOffset, Adc, RampReads, RampFitEffect, BadPixelMap>;  // Readout

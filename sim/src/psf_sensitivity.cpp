@@ -40,19 +40,17 @@ double central_difference(const Function& f, std::size_t n) {
   return sum / scale;
 }
 
-}  // namespace
-
-PsfSensitivity measure_sensitivity(const PixelPsf& psf) {
-  PsfSensitivity sensitivity;
+/// At a pixel (x0, y0): the largest numbers so far and there.
+void measure_at(const PixelPsf& psf, int x0, int y0, PsfSensitivity& sensitivity) {
   std::vector<double> scratch;
   for (int phase = 0; phase < kPhases; ++phase) {
     const double offset = static_cast<double>(phase) / kPhases - 0.5;
     for (const bool along_x : {true, false}) {
       for (int size = 2; size <= kLargestMask; ++size) {
-        const Rectangle mask{-(size / 2), -(size / 2), size, size};
+        const Rectangle mask{x0 - size / 2, y0 - size / 2, size, size};
         const auto flux_at = [&](double shift) {
-          const PixelPosition centre =
-              along_x ? PixelPosition{offset + shift, 0.0} : PixelPosition{0.0, offset + shift};
+          const PixelPosition centre = along_x ? PixelPosition{x0 + offset + shift, static_cast<double>(y0)}
+                                               : PixelPosition{static_cast<double>(x0), y0 + offset + shift};
           return mask_flux(psf, centre, mask, scratch);
         };
         const double middle = flux_at(0.0);
@@ -68,10 +66,18 @@ PsfSensitivity measure_sensitivity(const PixelPsf& psf) {
       }
     }
     for (int row = 0; row < kPhases; ++row) {
-      const PixelPosition centre{offset, static_cast<double>(row) / kPhases - 0.5};
-      sensitivity.peak_fraction = std::max(sensitivity.peak_fraction, mask_flux(psf, centre, {0, 0, 1, 1}, scratch));
+      const PixelPosition centre{x0 + offset, y0 + static_cast<double>(row) / kPhases - 0.5};
+      sensitivity.peak_fraction = std::max(sensitivity.peak_fraction, mask_flux(psf, centre, {x0, y0, 1, 1}, scratch));
     }
   }
+}
+
+}  // namespace
+
+PsfSensitivity measure_sensitivity(const PixelPsf& psf) {
+  PsfSensitivity sensitivity;
+  for (const PixelPosition& place : psf.places())
+    measure_at(psf, static_cast<int>(std::floor(place.x)), static_cast<int>(std::floor(place.y)), sensitivity);
   return sensitivity;
 }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "astroid/core/math.hpp"
+
 namespace astroid {
 
 namespace {
@@ -22,10 +24,16 @@ bool is_tabular(const Mission& mission) {
   return mission.psf.model == PsfModel::kGaussian || mission.psf.model == PsfModel::kTable;
 }
 
+/// Of the light after the diffusion of its charge, px.
+double gaussian_sigma(const Mission& mission) {
+  return det::hypot(mission.psf.sigma.value(), mission.psf.diffusion.value());
+}
+
 PsfTable psf_table(const Mission& mission) {
   const double accuracy = kSplineShare * kPsfShare * 1e-6 * mission.simulation.accuracy.value();
-  return mission.psf.model == PsfModel::kGaussian ? make_gaussian_table(mission.psf.sigma.value(), accuracy)
-                                                  : read_psf_table(mission.psf.file);
+  const Pixels diffusion = mission.psf.diffusion;
+  return mission.psf.model == PsfModel::kGaussian ? make_gaussian_table(gaussian_sigma(mission), accuracy)
+                                                  : diffuse_psf_table(read_psf_table(mission.psf.file), diffusion);
 }
 
 }  // namespace
@@ -101,7 +109,7 @@ std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& m
   const SubPixelSettings settings{.accuracy = gaussian ? std::min(accuracy, tight) : accuracy,
                                   .sub_pixels = mission.simulation.sub_pixels,
                                   .cells = has_intra_pixel_response(mission) ? mission.psf.intra_pixel.cells : 1};
-  return std::make_shared<const SubPixelRenderer>(gaussian ? make_gaussian_spectrum(mission.psf.sigma.value())
+  return std::make_shared<const SubPixelRenderer>(gaussian ? make_gaussian_spectrum(gaussian_sigma(mission))
                                                            : make_table_spectrum(read_psf_table(mission.psf.file)),
                                                   Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
 }

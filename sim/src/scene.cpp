@@ -18,6 +18,7 @@
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
 #include "astroid/core/sphere.hpp"
+#include "astroid/core/throughput.hpp"
 #include "astroid/sim/smearing.hpp"
 #include "effects/drift.hpp"
 #include "effects/jitter_model.hpp"
@@ -31,7 +32,6 @@ namespace {
 
 /// A star this far outside the frame gives less than this share of its light to it.
 constexpr double kNegligibleShare = 1e-12;
-constexpr double kPsfShare = 0.4;  ///< of the accuracy, see AccuracyShares
 
 /// Attitude is the spacecraft's: camera and detector stay out of the address, so cameras share it.
 RandomStream attitude_stream(const Mission& mission, StreamId effect) {
@@ -103,6 +103,11 @@ bool may_be_target(const SceneStar& star, const Mission& mission) {
   return star.magnitude <= mission.photometry.target_limit && star.electrons > 0.0;
 }
 
+/// px².
+double disc_area(const GhostSettings& ghosts) {
+  return kPi * ghosts.radius.value() * ghosts.radius.value();
+}
+
 /// The window of side `size` around a star, as masks see it: 6 px start at floor(x) - 2.
 Rectangle window_around(PixelPosition p, int size) {
   const int back = (size - 1) / 2;
@@ -131,12 +136,6 @@ double peak_pixel_bound(std::span<const SceneStar> stars, double peak_fraction) 
 }
 
 }  // namespace
-
-std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {
-  const PsfSettings& psf = mission.psf;
-  if (psf.model == PsfModel::kGaussian) return make_gaussian_psf(psf.sigma.value());
-  return make_prf_psf(read_psf_table(psf.file), kPsfShare * 1e-6 * mission.simulation.accuracy.value(), psf.phases);
-}
 
 double star_electrons(Magnitude magnitude, const TelescopeSettings& telescope, Seconds exposure_time) {
   return (electron_rate(magnitude, telescope.zero_point) * exposure_time).value();
@@ -167,7 +166,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
                                 .scale = ccd.pixel_scale,
                                 .axis_pixel = {ccd.axis_x, ccd.axis_y},
                                 .projection = ccd.projection};
-  projection_.emplace(pointing);
+  projection_.emplace(make_projection(mission_));
 
   if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
   constexpr double kSecondsPerDay = 86400.0;
@@ -180,6 +179,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   std::size_t too_faint = 0;
   std::size_t outside = 0;
   const double reach = psf_->stamp_half_width(kNegligibleShare);
+  const double passed = mean_throughput(mission_);
   for (const CatalogueStar& star : catalogue.stars) {
     SceneStar s;
     s.id = star.id;
@@ -215,12 +215,15 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
       ++too_faint;
       continue;
     }
+    const SkyPosition direction = catalogue.positions == PositionKind::kSky ? s.sky : projection_->to_sky(s.position);
+    add_ghost(s, direction);
     const int margin = static_cast<int>(std::ceil(reach)) + 1;
     if (!inside(grown(detector(), margin), s.position)) {
       ++outside;
       continue;
     }
-    const SkyPosition direction = catalogue.positions == PositionKind::kSky ? s.sky : projection_->to_sky(s.position);
+    s.response = passed * vignetting_at(mission_.telescope.vignetting, *projection_, s.position);
+    s.electrons *= s.response;
     s.motion = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
     if (satellite.aberration) s.aberration = aberration_jacobian(direction, pointing.axis, pointing, s.motion);
     stars_.push_back(std::move(s));
@@ -261,7 +264,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.cameras = mission_.telescope.cameras;
   s.exposures_per_bin = std::max(1.0, std::floor(mission_.analysis.bin / mission_.simulation.cycle));
   const ElectronsPerSecond from_sky = mean_background_rate(mission_);
-  s.sky = (from_sky - mission_.field.stray_light.level).value() * exposure;
+  s.sky = (from_sky - passed * mission_.field.stray_light.level).value() * exposure;
   s.background = (from_sky + ccd.dark_current).value() * exposure;
   s.pixel_noise_variance = expected_pixel_noise(mission_).variance();
   const double radius = mission_.photometry.aperture_radius.value();
@@ -305,7 +308,13 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   }
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
-  s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+  for (const Ghost& ghost : ghosts_) s.ghost_light += ghost.electrons / disc_area(mission_.telescope.ghosts);
+  s.ghosts = ghosts_.size();
+  s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background + s.ghost_light;
+  for (const double x : {-0.5, ccd.columns - 0.5})
+    for (const double y : {-0.5, ccd.rows - 0.5})
+      s.least_vignetting =
+          std::min(s.least_vignetting, vignetting_at(mission_.telescope.vignetting, *projection_, {x, y}));
   if (ccd.charge_injection.every_rows > 0) s.peak_pixel_bound += ccd.charge_injection.level.value();
   if (ccd.smearing.model != SmearingModel::kNone) s.brightest_column = brightest_column_bound(*this);
   if (renderer_.renderer == Renderer::kSubPixel) {
@@ -316,6 +325,20 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     sub_pixel_renderer_ = make_sub_pixel_renderer(mission_, kPsfShare * s.accuracy,
                                                   std::max(kRounding, kPsfShare * s.tightest_tolerance() / brightest));
   }
+}
+
+void Scene::add_ghost(const SceneStar& star, SkyPosition direction) {
+  const GhostSettings& settings = mission_.telescope.ghosts;
+  if (!(settings.fraction > 0.0) || !(star.magnitude < settings.brighter_than) || !(star.electrons > 0.0)) return;
+  const PixelPosition axis = projection_->axis_pixel();
+  Ghost ghost{.position = {2.0 * axis.x - star.position.x, 2.0 * axis.y - star.position.y},
+              .electrons = settings.fraction * star.electrons,
+              .motion = {}};
+  const auto farthest = grown(detector(), static_cast<int>(std::ceil(settings.radius.value())) + 2);
+  if (!inside(farthest, ghost.position)) return;
+  const AttitudeJacobian j = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
+  ghost.motion = {-j.dx_dyaw, -j.dx_dpitch, -j.dx_droll, -j.dy_dyaw, -j.dy_dpitch, -j.dy_droll};
+  ghosts_.push_back(ghost);
 }
 
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {

@@ -64,8 +64,9 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     list.reserve(found.size());
     for (const std::uint32_t i : found) {
       const SceneStar& star = scene.stars()[i];
-      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion,
-                      star.aberration, star.variability});
+      // Light as it enters the optics: conditions and responses take away what they take.
+      list.push_back({star.position, star.electrons / star.response, knobs.stamp_half_width(star.electrons),
+                      star.motion, star.aberration, star.variability});
     }
   }
   return lists;

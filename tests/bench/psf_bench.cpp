@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "astroid/core/distortion.hpp"
 #include "astroid/core/noise.hpp"
 #include "astroid/core/psf.hpp"
 
@@ -94,6 +95,51 @@ void BM_TableLibrary(benchmark::State& state) {
   while (state.KeepRunning()) benchmark::DoNotOptimize(make_prf_psf(table, 1e-6));
 }
 BENCHMARK(BM_TableLibrary)->Unit(benchmark::kMillisecond);
+
+// ---- The optics ----
+
+std::shared_ptr<const PixelPsf> profile_psf(std::int64_t number) {
+  constexpr double kAccuracy = 4e-7;
+  if (number == 0) return make_moffat_psf(1.4, 2.5, {}, kAccuracy);
+  if (number == 1) return make_airy_psf(1.5, 0.3, {}, kAccuracy);
+  return make_airy_psf(1.5, 0.3, {.diffusion = 0.2}, kAccuracy);
+}
+
+/// Making the library: 0 Moffat, 1 Airy, 2 Airy with charge diffusion.
+void BM_ProfileLibrary(benchmark::State& state) {
+  while (state.KeepRunning()) benchmark::DoNotOptimize(profile_psf(state.range(0)));
+}
+BENCHMARK(BM_ProfileLibrary)->Arg(0)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond);
+
+/// A Moffat star in a stamp of 9 px, inside the core, and of 61 px.
+void BM_AddProfileStar(benchmark::State& state) {
+  const auto psf = profile_psf(0);
+  Image<double, unit::ExpectedElectrons> image(kImageSide, kImageSide);
+  std::vector<double> scratch;
+  int k = 0;
+  while (state.KeepRunning()) {
+    psf->add_star({.centre = star(k), .electrons = 1e4, .half_width = 0.5 * static_cast<double>(state.range(0) - 1)},
+                  image.view(), scratch);
+    k = (k + 1) % 1000;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(BM_AddProfileStar)->Arg(9)->Arg(61);
+
+/// PLATO's distortion, all over its field: 0 forward, 1 inverse.
+void BM_Distortion(benchmark::State& state) {
+  constexpr double kFocalLength = 13750.987;  // px, of 15 arcsec/px
+  const auto distortion =
+      make_radial_distortion({.k1 = 0.32419, .k2 = 0.0232909, .k3 = 0.407979}, Pixels(kFocalLength));
+  int k = 0;
+  while (state.KeepRunning()) {
+    const PixelShift p{3000.0 * std::fmod(k * 0.618, 1.0), 3000.0 * std::fmod(k * 0.755, 1.0)};
+    benchmark::DoNotOptimize(state.range(0) == 0 ? distortion->distort(p) : distortion->undistort(p));
+    k = (k + 1) % 1000;
+  }
+  state.SetItemsProcessed(state.iterations());
+}
+BENCHMARK(BM_Distortion)->Arg(0)->Arg(1);
 
 // ---- A star on its way to an image ----
 

@@ -61,6 +61,19 @@ void believe_readout(const Scene& scene, GroundModel& model) {
   }
 }
 
+/// Sky as the optics let it through at each target, and dark current.
+std::vector<double> target_backgrounds(const Scene& scene) {
+  const Mission& mission = scene.mission();
+  std::vector<double> backgrounds;
+  if (mission.telescope.vignetting.model == VignettingModel::kNone) return backgrounds;
+  const Seconds exposure = mission.simulation.exposure_time;
+  for (const std::size_t target : scene.targets())
+    backgrounds.push_back((scene.stars()[target].response * (mission.field.sky_background * exposure) +
+                           mission.ccd.dark_current * exposure)
+                              .value());
+  return backgrounds;
+}
+
 }  // namespace
 
 std::shared_ptr<const PixelPsf> psf_in_images(const Scene& scene) {
@@ -96,6 +109,8 @@ Ground perfect_ground(const Scene& scene) {
   ground.psf = psf_in_images(scene);
   ground.model.psf = ground.psf.get();
   ground.model.noise = expected_pixel_noise(scene.mission());
+  ground.backgrounds = target_backgrounds(scene);
+  ground.model.backgrounds = ground.backgrounds;
   // What estimators have in common is decided by the targets of the full frame, whichever pixels are computed: the same
   // weights for a star in a window, a sub-field and the full frame.
   const std::vector<std::size_t> targets = full_frame_targets(scene);

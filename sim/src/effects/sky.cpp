@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "astroid/core/plane_kernels.hpp"
+#include "astroid/core/throughput.hpp"
 #include "astroid/sim/scene.hpp"
 #include "effects/need.hpp"
 
@@ -17,11 +18,12 @@ Electrons sky_electrons(const Mission& mission) {
 EffectNeed Sky::is_needed(const SceneSummary& scene) const {
   if (scene.mission->field.sky != SkyModel::kConstant)
     return {false, "the sky is not constant: zodiacal-sky makes it", 0.0, 0.0};
-  return background_need(scene, sky_electrons(*scene.mission).value(), "sky");
+  return background_need(scene, mean_throughput(*scene.mission) * sky_electrons(*scene.mission).value(), "sky");
 }
 
 void Sky::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  add_constant(state.expected.pixels(strip), sky_electrons(context.scene.mission()).value());
+  add_constant(state.expected.pixels(strip),
+               state.conditions.throughput * sky_electrons(context.scene.mission()).value());
 }
 
 }  // namespace astroid

@@ -17,7 +17,8 @@ EffectNeed StrayLight::is_needed(const SceneSummary& scene) const {
 
 void StrayLight::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const StrayLightSettings& stray = context.scene.mission().field.stray_light;
-  const double level = (stray.level * context.scene.mission().simulation.exposure_time).value();
+  const double level =
+      state.conditions.throughput * (stray.level * context.scene.mission().simulation.exposure_time).value();
   const double x = level * stray.gradient_x;
   const double y = level * stray.gradient_y;
   add_light(BilinearLight(context.scene.detector(), {level - x - y, level + x - y, level - x + y, level + x + y}),

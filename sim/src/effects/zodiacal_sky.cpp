@@ -18,7 +18,8 @@ void ZodiacalSky::apply(ExposureState& state, const EffectContext& context, cons
   const Seconds time = scene.mid_time(state.exposure);
   const Seconds exposure = scene.mission().simulation.exposure_time;
   std::array<double, 4> corners{};
-  for (std::size_t i = 0; i < corners.size(); ++i) corners[i] = (scene.sky_at_corner(i, time) * exposure).value();
+  for (std::size_t i = 0; i < corners.size(); ++i)
+    corners[i] = state.conditions.throughput * (scene.sky_at_corner(i, time) * exposure).value();
   add_light(BilinearLight(scene.detector(), corners), strip, state.expected);
 }
 

@@ -108,6 +108,29 @@ std::vector<test::EffectScene> scenes() {
       scene(
           "variable-stars", [](Mission& m) { m.field.variables = variables_file(); },
           [](Mission& m) { m.field.variables.clear(); }),
+      scene(
+          "throughput",
+          [](Mission& m) {
+            m.telescope.throughput.beginning_of_life = 0.9;
+            m.telescope.throughput.end_of_life = 0.8;
+            m.telescope.throughput.lifetime_years = 0.1;
+          },
+          [](Mission& m) { m.telescope.throughput = {}; }),
+      scene(
+          "breathing", [](Mission& m) { m.psf.breathing = {.amplitude = Pixels(0.2), .period = Seconds(300.0)}; },
+          [](Mission& m) { m.psf.breathing.amplitude = Pixels(0.0); }),
+      scene(
+          "ghosts",
+          [](Mission& m) {
+            m.telescope.ghosts = {
+                .fraction = 1e-2, .radius = Pixels(12.3), .brighter_than = m.telescope.zero_point - DeltaMag(10.0)};
+            m.satellite.jitter = {.model = JitterModel::kRedNoise,
+                                  .yaw = Arcseconds(1.0),
+                                  .pitch = Arcseconds(1.0),
+                                  .roll = Arcseconds(1.0),
+                                  .file = {}};
+          },
+          [](Mission& m) { m.telescope.ghosts.fraction = 0.0; }),
       scene("sky", {}, [](Mission& m) { m.field.sky_background = ElectronsPerSecond(0.0); }),
       scene("zodiacal-sky", [](Mission& m) { m.field.sky = SkyModel::kZodiacal; }, {}),
       scene(
@@ -118,6 +141,13 @@ std::vector<test::EffectScene> scenes() {
             m.field.stray_light.gradient_y = -0.2;
           },
           [](Mission& m) { m.field.stray_light = {}; }),
+      scene(
+          "vignetting",
+          [](Mission& m) {
+            m.ccd.pixel_scale = PixelScale(500.0);
+            m.telescope.vignetting.model = VignettingModel::kCosineSquared;
+          },
+          [](Mission& m) { m.telescope.vignetting.model = VignettingModel::kNone; }),
       scene(
           "prnu", [](Mission& m) { m.ccd.prnu = 0.02; }, [](Mission& m) { m.ccd.prnu = 0.0; }),
       scene(

@@ -109,34 +109,49 @@ TEST_P(SkippedBelowThreshold, IsHarmless) {
 
 INSTANTIATE_TEST_SUITE_P(
     Effects, SkippedBelowThreshold,
-    testing::Values(SkipCase{"sky", [](Mission& m, double v) { m.field.sky_background = ElectronsPerSecond(v); }, 10.0},
-                    SkipCase{"stray-light",
-                             [](Mission& m, double v) {
-                               m.field.stray_light = {ElectronsPerSecond(v), 0.5, -0.5};
-                             },
-                             10.0},
-                    SkipCase{"zodiacal-sky",
-                             [](Mission& m, double v) {
-                               // The pixel makes the sky faint: its scale, not the stars of the laboratory, is the
-                               // strength.
-                               m.field.sky = SkyModel::kZodiacal;
-                               m.ccd.pixel_scale = PixelScale(v);
-                             },
-                             15.0},
-                    SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); },
-                             10.0},
-                    SkipCase{"open-shutter-smearing",
-                             [](Mission& m, double v) {
-                               m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(v)};
-                             },
-                             10.0},
-                    SkipCase{"frame-transfer-smearing",
-                             [](Mission& m, double v) {
-                               m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(v)};
-                               m.ccd.smearing.clear_time = Seconds(0.0);
-                             },
-                             10.0},
-                    SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
+    testing::Values(
+        SkipCase{"sky", [](Mission& m, double v) { m.field.sky_background = ElectronsPerSecond(v); }, 10.0},
+        SkipCase{"stray-light",
+                 [](Mission& m, double v) {
+                   m.field.stray_light = {ElectronsPerSecond(v), 0.5, -0.5};
+                 },
+                 10.0},
+        SkipCase{"zodiacal-sky",
+                 [](Mission& m, double v) {
+                   // The pixel makes the sky faint: its scale, not the stars of the laboratory, is the
+                   // strength.
+                   m.field.sky = SkyModel::kZodiacal;
+                   m.ccd.pixel_scale = PixelScale(v);
+                 },
+                 15.0},
+        SkipCase{"throughput", [](Mission& m, double v) { m.telescope.throughput.beginning_of_life = 1.0 - v; }, 0.1},
+        SkipCase{"breathing",
+                 [](Mission& m, double v) { m.psf.breathing = {.amplitude = Pixels(v), .period = Seconds(42.0)}; },
+                 0.3},
+        SkipCase{"ghosts",
+                 [](Mission& m, double v) {
+                   m.telescope.ghosts = {.fraction = v, .radius = Pixels(20.0), .brighter_than = Magnitude(30.0)};
+                 },
+                 0.1},
+        SkipCase{"vignetting",
+                 [](Mission& m, double v) {
+                   m.ccd.pixel_scale = PixelScale(200.0);
+                   m.telescope.vignetting.model = VignettingModel::kPolynomial;
+                   m.telescope.vignetting.polynomial = {v};
+                 },
+                 1.0},
+        SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); }, 10.0},
+        SkipCase{
+            "open-shutter-smearing",
+            [](Mission& m, double v) { m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(v)}; },
+            10.0},
+        SkipCase{"frame-transfer-smearing",
+                 [](Mission& m, double v) {
+                   m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(v)};
+                   m.ccd.smearing.clear_time = Seconds(0.0);
+                 },
+                 10.0},
+        SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
     [](const testing::TestParamInfo<SkipCase>& parameter) {
       std::string name = parameter.param.effect;
       std::erase(name, '-');

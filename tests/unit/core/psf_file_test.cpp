@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "astroid/core/distortion.hpp"
 #include "astroid/core/fits.hpp"
 #include "astroid/core/psf.hpp"
 #include "astroid/test/psf_table.hpp"
@@ -104,6 +105,61 @@ TEST_F(PsfFile, RendersAsTheTableInMemory) {
   make_prf_psf(table, 1e-5)->integrate({0.3, 0.4}, {-3, -3, 7, 7}, memory);
   make_prf_psf(read_psf_table(path), 1e-5)->integrate({0.3, 0.4}, {-3, -3, 7, 7}, file);
   EXPECT_EQ(memory, file);
+}
+
+TEST_F(PsfFile, OfAFieldHoldsTablesAndTheirPlaces) {
+  const std::string path = (folder_.path() / "field.fits").string();
+  const std::vector<double> samples(16, 1.0);
+  {
+    FitsWriter fits(path);
+    for (const double x : {10.5, 400.0}) {
+      fits.begin_image(FitsNumber::kFloat64, {4, 4});
+      fits.cards(std::vector<FitsCard>{{"SUBPIX", 2}, {"FIELDX", x}, {"FIELDY", 2.0 * x}});
+      fits.write_pixels(0, std::span<const double>(samples));
+    }
+    fits.commit();
+  }
+  const auto tables = read_field_psf(path);
+  ASSERT_EQ(tables.size(), 2U);
+  EXPECT_EQ(tables[0].position.x, 10.5);
+  EXPECT_EQ(tables[1].position.y, 800.0);
+  EXPECT_EQ(tables[1].table.samples_per_pixel, 2.0);
+  EXPECT_EQ(tables[1].table.centre_x, 1.5);
+}
+
+TEST_F(PsfFile, OfAFieldWithoutPlacesIsRefused) {
+  const std::string path = write({{"SUBPIX", 2}, {"FIELDX", 1.0}});
+  try {
+    static_cast<void>(read_field_psf(path));
+    ADD_FAILURE() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("FIELDY"));
+    EXPECT_THAT(error.what(), HasSubstr("has no place"));
+  }
+}
+
+TEST_F(PsfFile, OfSipCoefficientsIsReadFromItsHeader) {
+  const SipPolynomial sip =
+      read_sip_polynomial(write({{"A_ORDER", 3}, {"B_ORDER", 2}, {"A_2_0", 1e-6}, {"A_1_2", -2e-9}, {"B_1_1", 3e-6}}));
+  EXPECT_EQ(sip.order, 3);
+  EXPECT_EQ(sip.a[sip.index(2, 0)], 1e-6);
+  EXPECT_EQ(sip.a[sip.index(1, 2)], -2e-9);
+  EXPECT_EQ(sip.b[sip.index(1, 1)], 3e-6);
+  EXPECT_EQ(sip.b[sip.index(0, 3)], 0.0);
+}
+
+TEST_F(PsfFile, OfUnusableSipCoefficientsIsRefused) {
+  const auto refusal_of = [&](const std::vector<FitsCard>& cards) -> std::string {
+    try {
+      static_cast<void>(read_sip_polynomial(write(cards)));
+    } catch (const InputError& error) {
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(refusal_of({{"A_ORDER", 2}}), HasSubstr("B_ORDER"));
+  EXPECT_THAT(refusal_of({{"A_ORDER", 1}, {"B_ORDER", 12}}), HasSubstr("A_ORDER = 1"));
+  EXPECT_THAT(refusal_of({{"A_ORDER", 2}, {"B_ORDER", 2}, {"B_1_0", 0.1}}), HasSubstr("B_1_0"));
 }
 
 }  // namespace

@@ -11,6 +11,7 @@
 
 #include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/test/plato_distortion.hpp"
 
 namespace astroid {
 namespace {
@@ -390,6 +391,104 @@ TEST(AttitudeJacobian, AgreesWithAPointingThatIsTurned) {
 
 TEST(AttitudeJacobian, IsAbsentWhereThereIsNoImage) {
   EXPECT_FALSE(SkyProjection(lops2()).attitude_jacobian({275.3104, 47.8869}));
+}
+
+// With distortion.
+
+CameraPointing distorted_plato(const std::string& code = "TAN") {
+  CameraPointing pointing = lops2(code, 25.0);
+  pointing.distortion = make_radial_distortion(test::plato_distortion(), test::plato_focal_length());
+  pointing.detector = {0, 0, 4510, 4510};
+  return pointing;
+}
+
+TEST(SkyProjection, WithDistortionReturnsWhereItCameFrom) {
+  for (const std::string_view code : supported_projections()) {
+    const SkyProjection projection(distorted_plato(std::string(code)));
+    for (double y = 0.0; y < 4510.0; y += 400.3) {
+      for (double x = 0.0; x < 4510.0; x += 400.7) {
+        const auto pixel = projection.to_pixel(projection.to_sky({x, y}));
+        ASSERT_TRUE(pixel);
+        EXPECT_NEAR(pixel->x, x, kPixelGrid);
+        EXPECT_NEAR(pixel->y, y, kPixelGrid);
+      }
+    }
+    EXPECT_EQ(projection.to_pixel(projection.axis())->x, projection.axis_pixel().x);
+  }
+}
+
+TEST(SkyProjection, WithDistortionHasTheJacobianOfItsPositions) {
+  // A star moves as the position of a camera turned about its axis, or pointed elsewhere.
+  const CameraPointing pointing = distorted_plato();
+  const SkyProjection projection(pointing);
+  const SkyPosition star = projection.to_sky({4300.0, 200.0});
+  const auto jacobian = projection.attitude_jacobian(star);
+  ASSERT_TRUE(jacobian);
+  const auto moved = [&](double roll) {
+    CameraPointing turned = pointing;
+    turned.roll = Degrees(pointing.roll.value() + roll / 3600.0);
+    return *SkyProjection(turned).to_pixel(star);
+  };
+  constexpr double kTurn = 20.0;  // arcsec
+  EXPECT_NEAR(jacobian->dx_droll, (moved(kTurn).x - moved(-kTurn).x) / (2.0 * kTurn), 1e-8);
+  EXPECT_NEAR(jacobian->dy_droll, (moved(kTurn).y - moved(-kTurn).y) / (2.0 * kTurn), 1e-8);
+  // Distortion stretches what yaw does: at 13 deg by some per cent.
+  CameraPointing perfect = pointing;
+  perfect.distortion = nullptr;
+  const auto straight = SkyProjection(perfect).attitude_jacobian(star);
+  EXPECT_GT(std::abs(jacobian->dx_dyaw / straight->dx_dyaw - 1.0), 0.01);
+}
+
+TEST(SkyProjection, GivesTheAngleFromTheAxisOfAPixel) {
+  for (const bool with_distortion : {false, true}) {
+    for (const std::string_view code : supported_projections()) {
+      CameraPointing pointing = distorted_plato(std::string(code));
+      if (!with_distortion) pointing.distortion = nullptr;
+      const SkyProjection projection(pointing);
+      for (const PixelPosition p : {PixelPosition{0.0, 0.0}, {4509.0, 17.5}, {2254.5, 2254.5}, {2254.6, 2254.5}}) {
+        EXPECT_NEAR(projection.field_angle(p)->value(),
+                    angular_separation(projection.axis(), projection.to_sky(p)).value(), 2e-12);
+      }
+    }
+  }
+  EXPECT_FALSE(SkyProjection(lops2("SIN")).field_angle({1e6, 0.0}));
+}
+
+TEST(SkyProjection, HasNoImageBeyondAFold) {
+  CameraPointing pointing = lops2();
+  pointing.distortion = make_radial_distortion({.k1 = -10.0}, test::plato_focal_length());  // folds at tan = 0.1826
+  pointing.detector = {2000, 2000, 500, 500};
+  const SkyProjection projection(pointing);
+  EXPECT_TRUE(projection.to_pixel({95.3104, -47.8869 + 10.0}));
+  EXPECT_FALSE(projection.to_pixel({95.3104, -47.8869 + 11.0}));
+  EXPECT_FALSE(projection.to_pixel({95.3104, -47.8869 + 60.0}));
+  EXPECT_FALSE(projection.attitude_jacobian({95.3104, -47.8869 + 30.0}));
+  EXPECT_TRUE(std::isnan(projection.to_sky({2254.5, 20000.0}).ra));
+  EXPECT_FALSE(projection.field_angle({2254.5, 20000.0}));
+}
+
+TEST(SkyProjection, WritesNoCoordinatesWhereNoSipPolynomialIsGoodEnough) {
+  CameraPointing pointing = lops2();
+  pointing.distortion = make_radial_distortion({.k1 = -10.0}, test::plato_focal_length());
+  pointing.detector = {0, 0, 4510, 4510};  // its corner is beyond the fold
+  EXPECT_TRUE(SkyProjection(pointing).fits_cards().empty());
+  pointing.detector = {};
+  EXPECT_THROW(static_cast<void>(SkyProjection(pointing)), InputError);
+}
+
+TEST(SkyProjection, ReadsItsOwnDistortedHeader) {
+  SipPolynomial sip(3);
+  sip.a[sip.index(2, 0)] = 3e-6;
+  sip.a[sip.index(1, 2)] = -2e-9;
+  sip.b[sip.index(1, 1)] = 4e-6;
+  CameraPointing pointing = lops2("TAN", 12.0);
+  pointing.distortion = make_sip_distortion(sip);
+  pointing.detector = {0, 0, 4510, 4510};
+  const SkyProjection projection(pointing);
+  const auto read = SkyProjection::from_header(header_of(projection), "self.fits");
+  ASSERT_TRUE(read);
+  for (const PixelPosition p : {PixelPosition{0.0, 0.0}, {4509.0, 17.5}, {100.0, 4400.0}})
+    EXPECT_LT(to_arcseconds(angular_separation(read->to_sky(p), projection.to_sky(p))).value(), 1e-6);
 }
 
 }  // namespace

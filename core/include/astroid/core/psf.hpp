@@ -9,6 +9,7 @@
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/image.hpp"
 #include "astroid/core/pixel_response.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
@@ -72,6 +73,9 @@ class PixelPsf {
   /// Upper bound of the relative error of an aperture's flux due to the approximation of this renderer (0 if exact).
   [[nodiscard]] virtual double approximation_error() const = 0;
 
+  /// Where on the detector it may be told from others: one place for a PSF that is the same everywhere.
+  [[nodiscard]] virtual std::vector<PixelPosition> places() const { return {{0.0, 0.0}}; }
+
   [[nodiscard]] virtual std::string description() const = 0;
 };
 
@@ -88,6 +92,39 @@ class PixelPsf {
 /// @complexity   2 (n + 1) tails and n^2 products for n x n pixels, no allocation (bench: BM_GaussianStamp)
 std::shared_ptr<const PixelPsf> make_gaussian_psf(double sigma);
 
+/// What a PSF with wings leaves out, and what the detector does to it.
+struct PsfWings {
+  static constexpr int kLongestReach = 90;
+  int reach = 30;          ///< px: half the side of the square beyond which light is left out, 2 .. kLongestReach
+  double diffusion = 0.0;  ///< px: rms of the charge diffusion, 0 .. 3
+};
+
+/// Moffat's profile, (1 + r²/alpha²)^(-beta), integrated over pixels: exact fluxes at every sub-pixel phase of a
+/// library, four-point interpolation in between, with more phases within 8 px than beyond (renderer `prf`).
+///
+/// Normalised on infinite support: (1 + r²/alpha²)^(1-beta) of the light is farther than r from the star, and what is
+/// beyond the reach is left out, not redistributed.
+/// @param fwhm      px, 0.2 .. 20; alpha = fwhm / (2 sqrt(2^(1/beta) - 1))
+/// @param beta      more than 1, at most 100
+/// @param accuracy  relative flux error allowed to the interpolation; decides the number of phases.
+/// @param phases    of the core per axis, or 0 to let `accuracy` decide.
+/// @accuracy  approximation_error(), tested against adaptive quadrature (Moffat.HasTheFluxOfAdaptiveQuadrature)
+/// @source Moffat1969, Trujillo2001   @throws InputError naming every unusable parameter
+std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings, double accuracy,
+                                                int phases = 0);
+
+/// Diffraction pattern of a round aperture with a round central obscuration, integrated over pixels like
+/// make_moffat_psf().
+///
+/// Normalised on infinite support: about 2 / (pi² (1 - obscuration) r / (lambda/D)) of the light is farther than r from
+/// the star; what is beyond the reach is left out.
+/// @param lambda_over_d  px, 0.3 .. 20: wavelength over diameter; the first dark ring without obscuration is at 1.2197
+///                       of it
+/// @param obscuration    diameter of the central obscuration over that of the aperture, 0 to less than 1
+/// @source Schroeder2000 §10.2
+std::shared_ptr<const PixelPsf> make_airy_psf(double lambda_over_d, double obscuration, const PsfWings& wings,
+                                              double accuracy, int phases = 0);
+
 /// A PSF given as a table: surface brightness on a grid finer than the pixel.
 struct PsfTable {
   Image<double, unit::Relative> samples;  ///< any normalisation; must be finite and have a positive sum
@@ -100,6 +137,12 @@ struct PsfTable {
 /// CRPIX1/2 (1-based) or the geometric centre of the image.
 /// @throws InputError naming the file and keyword; EnvironmentError when the file cannot be read.
 PsfTable read_psf_table(const std::string& path);
+
+/// The table after its charge has diffused: convolved with a Gaussian of rms `sigma` px, sums kept, and extended by its
+/// reach. Samples wider than sigma are divided first, along the spline of make_prf_psf().
+/// @accuracy  1e-8 of the flux for tables of at least a sample per sigma (test: Diffusion.AddsItsVariance)
+/// @throws InputError when sigma is negative or not finite.
+PsfTable diffuse_psf_table(const PsfTable& table, Pixels sigma);
 
 /// Pixel-integrated library over sub-pixel phases with four-point Lagrange interpolation (renderer `prf`).
 ///
@@ -117,5 +160,25 @@ std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accur
 ///            (test: GaussianTable.IsAsFineAsTheAccuracyNeeds)
 /// @param sigma  px, > 0
 PsfTable make_gaussian_table(double sigma, double accuracy);
+
+/// A PSF table and the place of the field where it holds.
+struct FieldPsfTable {
+  PixelPosition position;
+  PsfTable table;
+};
+
+/// Reads every image of a FITS file as a PSF table (read_psf_table()); its place on the detector, 0-based px, stands in
+/// the keywords FIELDX and FIELDY.
+/// @throws InputError naming image and keyword; EnvironmentError when the file cannot be read.
+std::vector<FieldPsfTable> read_field_psf(const std::string& path);
+
+/// A PSF that varies over the field: tables blended with the weights of a thin-plate spline through their places, so
+/// smooth, exact at every table's place, and of sum 1. Beyond the box around the places it stays what it is at the
+/// edge.
+/// @param diffusion  px, of the charge (diffuse_psf_table()).  @param accuracy, phases  of make_prf_psf().
+/// @complexity  as many times make_prf_psf()'s as there are tables
+/// @throws InputError when two tables share a place.
+std::shared_ptr<const PixelPsf> make_field_psf(std::span<const FieldPsfTable> tables, Pixels diffusion, double accuracy,
+                                               int phases = 0);
 
 }  // namespace astroid

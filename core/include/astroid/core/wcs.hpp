@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "astroid/core/distortion.hpp"
 #include "astroid/core/fits_card.hpp"
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/sphere.hpp"
@@ -26,6 +27,10 @@ struct CameraPointing {
   PixelScale scale{1.0};           ///< at the axis
   PixelPosition axis_pixel{};      ///< where the axis falls, 0-based
   std::string projection = "TAN";  ///< one of supported_projections()
+  /// Of the optics, in pixels along the detector's x and y from the axis; nothing: a perfect camera.
+  std::shared_ptr<const Distortion> distortion{};
+  /// Pixels that headers have to describe; asked for where a distortion is given.
+  Rectangle detector{};
 };
 
 /// The zenithal projections of FITS WCS that a pointing may use: TAN, SIN, ARC, STG, ZEA.  @source Calabretta2002 §5.1
@@ -37,6 +42,9 @@ inline constexpr double kPixelGrid = 0x1p-24;
 
 /// To the nearest multiple of kPixelGrid, halves up. The only place where positions are rounded.
 [[nodiscard]] PixelPosition round_to_pixel_grid(PixelPosition position);
+
+/// How far the coordinates of a FITS header may be from the simulated ones, px.
+inline constexpr double kHeaderTolerance = 1e-3;
 
 /// How far a star moves on the detector when the spacecraft turns by a small angle; px per arcsec.
 ///
@@ -74,7 +82,8 @@ class SkyProjection {
   /// Where on the detector a direction falls, rounded by round_to_pixel_grid().
   ///
   /// Nothing where the projection has no image: for TAN and SIN 90 deg or more from the axis (N3), for ARC, STG and ZEA
-  /// the antipode, elsewhere where WCSLIB says so or its inverse of a distortion does not converge.
+  /// the antipode, beyond a fold of the distortion, elsewhere where WCSLIB says so or its inverse of a distortion does
+  /// not converge.
   /// @accuracy 1e-13 deg on the sky before rounding; the axis position exactly for the axis itself.
   [[nodiscard]] std::optional<PixelPosition> to_pixel(SkyPosition position) const;
 
@@ -91,6 +100,11 @@ class SkyProjection {
   /// @returns nothing where to_pixel() has nothing.
   [[nodiscard]] std::optional<AttitudeJacobian> attitude_jacobian(SkyPosition position) const;
 
+  /// Angle between the optical axis and the direction that falls on a pixel position, by arithmetic that is the same on
+  /// every processor; nothing where to_sky() has nothing. Only for a projection made from a pointing (else BugError).
+  /// @accuracy 1e-12 deg beside to_sky(), up to 1 deg from the projection's edge.
+  [[nodiscard]] std::optional<Degrees> field_angle(PixelPosition position) const;
+
   /// Where the optical axis (for a header: the reference point) falls and points.
   [[nodiscard]] PixelPosition axis_pixel() const;
   [[nodiscard]] SkyPosition axis() const;
@@ -99,7 +113,10 @@ class SkyProjection {
   [[nodiscard]] const std::string& code() const;  ///< "TAN"
 
   /// The keywords that describe this projection in an image whose first pixel is (x0, y0) of the detector: CTYPE,
-  /// CUNIT, CRPIX (1-based), CRVAL, CD, LONPOLE, RADESYS. Only for a projection made from a pointing (else BugError).
+  /// CUNIT, CRPIX (1-based), CRVAL, CD, LONPOLE, RADESYS, and the distortion as SIP: exact where it is one, else a
+  /// polynomial over the whole detector that keeps to it within kHeaderTolerance. AP and BP, which could only
+  /// approximate an inverse that readers find themselves, are left out. Empty where no SIP polynomial is that good: no
+  /// coordinates are better than wrong ones. Only for a projection made from a pointing (else BugError).
   [[nodiscard]] std::vector<FitsCard> fits_cards(int x0 = 0, int y0 = 0) const;
 
  private:

@@ -66,7 +66,8 @@ struct GroundModel {
   std::span<const FieldStar> stars;      ///< targets and every contaminant
   std::span<const std::size_t> targets;  ///< indices into `stars`, in the order of the results
   const PixelPsf* psf = nullptr;
-  PixelNoise noise;  ///< background is the expected sky + dark, e- per pixel and exposure
+  PixelNoise noise;                       ///< background is the expected sky + dark, e- per pixel and exposure
+  std::span<const double> backgrounds{};  ///< the same at each target, where it is not the same everywhere; or empty
   Gain gain{1.0};
   Adu bias;
   double accuracy = 1e-6;  ///< of the faintest target's flux: what the cut-off wing of one neighbour may add

@@ -103,7 +103,7 @@ struct EffectNeed {
 /// What rendering a star takes.
 struct RenderedStar {
   PixelPosition position;         ///< px, at the nominal pointing
-  double electrons = 0.0;         ///< per exposure
+  double electrons = 0.0;         ///< per exposure, before throughput and vignetting
   double half_width = 0.0;        ///< of its stamp, px
   AttitudeJacobian motion;        ///< px per arcsec of yaw, pitch and roll
   AberrationJacobian aberration;  ///< px per velocity of the spacecraft
@@ -132,6 +132,7 @@ struct CameraState {
   std::vector<std::vector<std::vector<RenderedStar>>> variables;  ///< likewise those whose flux varies
   std::vector<SubPixelTile> tiles;                                ///< instead of `stars`, of the sub-pixel renderer
   std::optional<IntraPixelState> intra_pixel;                     ///< nothing when the effect is off
+  Plane<float, unit::Relative> vignetting;                        ///< 1 on the axis; empty when the effect is off
   Plane<float, unit::Relative> prnu;                ///< pixel response, mean 1; empty when the effect is off
   Plane<float, unit::Relative> flat_field;          ///< its large-scale part, mean 1; empty when the effect is off
   Plane<float, unit::ExpectedElectrons> dark;       ///< dark electrons per exposure; empty when the effect is off

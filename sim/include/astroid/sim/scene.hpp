@@ -19,6 +19,7 @@
 #include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "astroid/sim/attitude_trend.hpp"
+#include "astroid/sim/optics.hpp"
 #include "astroid/sim/renderer.hpp"
 #include "astroid/sim/scene_summary.hpp"
 
@@ -30,7 +31,8 @@ struct SceneStar {
   SkyPosition sky;                ///< NaN for a pixel catalogue
   PixelPosition position;         ///< px, at the nominal pointing, rounded to 2^-24 px
   Magnitude magnitude;            ///< in the zero point's passband
-  double electrons = 0.0;         ///< per exposure
+  double electrons = 0.0;         ///< detected per exposure, mean over the run
+  double response = 1.0;          ///< what `electrons` have of throughput and vignetting
   AttitudeJacobian motion;        ///< px per arcsec of yaw, pitch and roll
   AberrationJacobian aberration;  ///< px per velocity of the spacecraft; zero where the mission leaves it out
   int variability = -1;           ///< index into Scene::variables(); -1: constant
@@ -40,6 +42,13 @@ struct SceneStar {
 /// What moves the line of sight.
 struct AttitudeParts {
   bool jitter = false, drift = false, repointing = false;
+};
+
+/// The reflection of a bright star: a uniform disc, mirrored through the optical axis.
+struct Ghost {
+  PixelPosition position;   ///< px, of its centre at the nominal pointing
+  double electrons = 0.0;   ///< per exposure, before throughput and vignetting
+  AttitudeJacobian motion;  ///< px per arcsec, opposite to the star's
 };
 
 /// The immutable scene.
@@ -58,6 +67,8 @@ class Scene {
   [[nodiscard]] const Mission& mission() const { return mission_; }
   [[nodiscard]] Rectangle detector() const { return {0, 0, mission_.ccd.columns, mission_.ccd.rows}; }
   [[nodiscard]] std::span<const SceneStar> stars() const { return stars_; }
+  /// Of all stars of the catalogue whose ghost may touch the detector, in catalogue order.
+  [[nodiscard]] std::span<const Ghost> ghosts() const { return ghosts_; }
   /// Indices of the targets, in catalogue order.
   [[nodiscard]] std::span<const std::size_t> targets() const { return targets_; }
   [[nodiscard]] const std::shared_ptr<const PixelLayout>& layout() const { return layout_; }
@@ -88,10 +99,12 @@ class Scene {
  private:
   void find_sky();
   void read_variable_stars(const StarCatalogue& catalogue);
+  void add_ghost(const SceneStar& star, SkyPosition direction);
 
   Mission mission_;
   std::optional<SkyProjection> projection_;
   std::vector<SceneStar> stars_;
+  std::vector<Ghost> ghosts_;
   std::vector<std::size_t> targets_;
   std::vector<VariableStar> variables_;
   std::shared_ptr<const PixelLayout> layout_;
@@ -107,9 +120,6 @@ class Scene {
   SceneSummary summary_;
   std::vector<std::string> notes_;
 };
-
-/// The PSF of a mission, accurate enough for its configuration. @throws InputError, EnvironmentError for a table
-std::shared_ptr<const PixelPsf> make_psf(const Mission& mission);
 
 /// Indices of the stars that are targets when the full frame is computed: a decision that looks at these is the same in
 /// windows and sub-fields.

@@ -33,6 +33,9 @@ struct SceneSummary {
   double sky = 0.0;                         ///< on the axis in the middle of the run, e- per pixel and exposure
   double background = 0.0;                  ///< expected sky + stray light + dark, e- per pixel and exposure
   double pixel_noise_variance = 0.0;        ///< background + readout² + quantisation², e-²
+  double least_vignetting = 1.0;            ///< at the corners of the detector, relative to the axis
+  std::size_t ghosts = 0;                   ///< that may touch the detector
+  double ghost_light = 0.0;                 ///< e- per pixel and exposure, were all of them in one place
   double aperture_pixels = 0.0;             ///< area that bounds any target's aperture
   double exposures_per_bin = 1.0;           ///< in the longest time bin reported
   int cameras = 1;

@@ -63,7 +63,7 @@ TEST_F(Schema, RefusesWhatTheReaderRefuses) {
   EXPECT_FALSE(accepts(minimal_xml("<Simulation><Exposures>0</Exposures></Simulation>"))) << "out of range";
   EXPECT_FALSE(accepts(minimal_xml("<Simulation><Start>soon</Start></Simulation>"))) << "bad time";
   EXPECT_FALSE(accepts(minimal_xml("<Output><Images>every 0</Images></Output>"))) << "bad count";
-  EXPECT_FALSE(accepts(minimal_xml("<PSF><Model>moffat</Model></PSF>"))) << "bad choice";
+  EXPECT_FALSE(accepts(minimal_xml("<PSF><Model>lorentz</Model></PSF>"))) << "bad choice";
   EXPECT_FALSE(accepts(minimal_xml("<PSF/><PSF/>"))) << "twice";
   EXPECT_FALSE(accepts("<Astroid version=\"1\"/>")) << "missing required";
   std::string other_version = minimal_xml();

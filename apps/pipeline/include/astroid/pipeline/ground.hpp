@@ -14,6 +14,7 @@ namespace astroid {
 struct Ground {
   std::vector<FieldStar> stars;
   std::shared_ptr<const PixelPsf> psf;
+  std::vector<double> backgrounds;  ///< e- per pixel at each target; empty where it is the same everywhere
   GroundModel model;
 };
 

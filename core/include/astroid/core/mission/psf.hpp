@@ -10,9 +10,9 @@ namespace astroid {
 
 enum class PsfModel { kGaussian, kTable, kMoffat, kAiry, kField };
 
-/// Width that follows the temperature.
+/// Width that follows the temperature: a blur of variance amplitude² (1 - cos 2 pi (t / period + phase)) / 2.
 struct BreathingSettings {
-  double amplitude = 0.0;  ///< of the width, relative; 0: none
+  Pixels amplitude{0.0};  ///< rms of the blur at its largest, along x and along y; 0: none
   Seconds period{86400.0};
   double phase = 0.0;  ///< turns at the start of the run
 
@@ -39,6 +39,7 @@ struct PsfSettings {
   double beta = 3.5;             ///< of the Moffat profile
   Pixels lambda_over_d{1.0};     ///< of the Airy pattern
   double obscuration = 0.0;      ///< diameter of the central obscuration relative to the aperture
+  int reach = 30;                ///< px: half the side of the square beyond which a Moffat or Airy PSF has no light
   std::string file;              ///< absolute path; of the table and field models
   int phases = 0;                ///< of the prf renderer, 0: from the accuracy
   Pixels stamp_half_width{0.0};  ///< 0: from the accuracy

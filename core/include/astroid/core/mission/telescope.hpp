@@ -11,14 +11,25 @@ namespace astroid {
 enum class DistortionModel { kNone, kRadial, kSip };
 enum class VignettingModel { kNone, kCosineSquared, kPolynomial };
 
-/// Departure of the optics from the projection.
+/// Departure of the optics from the projection, see RadialTangential and SipPolynomial.
 struct DistortionSettings {
   DistortionModel model = DistortionModel::kNone;
-  std::vector<double> radial;  ///< k1, k2, k3 of r' = r (1 + k1 r² + k2 r⁴ + k3 r⁶), r = tan of the field angle
+  std::vector<double> radial;      ///< k1, k2, k3
   std::vector<double> tangential;  ///< p1, p2
-  std::string file;                ///< absolute path; SIP coefficients as a FITS header
+  std::vector<double> prism;       ///< s1, s2
+  std::string file;                ///< absolute path; FITS header with the SIP coefficients
 
   friend bool operator==(const DistortionSettings&, const DistortionSettings&) = default;
+};
+
+/// Light that the optics pass, less every year.
+struct ThroughputSettings {
+  double beginning_of_life = 1.0;  ///< relative to what zero point and sky background include
+  double end_of_life = 1.0;        ///< after the lifetime, relative to the beginning of life; linear between
+  double lifetime_years = 6.5;
+  double age_years = 0.0;  ///< at the start of the run
+
+  friend bool operator==(const ThroughputSettings&, const ThroughputSettings&) = default;
 };
 
 /// Light lost towards the edge of the field, relative to the axis.
@@ -51,11 +62,9 @@ struct CameraGroup {
 struct TelescopeSettings {
   Magnitude zero_point{20.62};  ///< magnitude that gives one detected electron per second
   std::string zero_point_passband = "P";
-  int cameras = 24;                     ///< that observe the field
-  int simulated_cameras = 1;            ///< n <= cameras; independent terms are scaled to `cameras`
-  double throughput = 1.0;              ///< relative to what the zero point includes, at the beginning of life
-  double end_of_life_throughput = 1.0;  ///< the same after `lifetime_years`; linear between
-  double lifetime_years = 6.5;
+  int cameras = 24;           ///< that observe the field
+  int simulated_cameras = 1;  ///< n <= cameras; independent terms are scaled to `cameras`
+  ThroughputSettings throughput;
   DistortionSettings distortion;
   VignettingSettings vignetting;
   GhostSettings ghosts;

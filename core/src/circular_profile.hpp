@@ -1,0 +1,25 @@
+// Circular point-spread functions as surface brightness against distance, and tables of their exact fluxes.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "astroid/core/psf.hpp"
+
+namespace astroid::detail {
+
+/// Surface brightness of a star of unit flux, normalised on infinite support.
+struct CircularProfile {
+  std::function<double(double r2)> density;  ///< 1/px² at squared distance r2 (px²)
+  double scale = 1.0;                        ///< px: over which it changes; decides the quadrature
+  std::string name;
+};
+
+/// Flux of every cell of a square of cells about the star, by Gauss-Legendre quadrature.
+///
+/// The total is what falls into the square, not 1: 1 minus it is the light beyond.
+/// @param samples_per_pixel  even   @param half_width  px, of the square
+/// @accuracy  1e-11 of a cell's flux (test: CircularProfile.HasTheFluxOfAdaptiveQuadrature)
+PsfTable flux_table(const CircularProfile& profile, int samples_per_pixel, int half_width);
+
+}  // namespace astroid::detail

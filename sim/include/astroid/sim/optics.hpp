@@ -1,0 +1,22 @@
+// The optics of a mission, made from its configuration.
+#pragma once
+
+#include <memory>
+
+#include "astroid/core/distortion.hpp"
+#include "astroid/core/mission.hpp"
+#include "astroid/core/psf.hpp"
+#include "astroid/core/wcs.hpp"
+
+namespace astroid {
+
+/// The distortion of a mission; null where it has none. @throws InputError, EnvironmentError for a SIP file
+std::shared_ptr<const Distortion> make_distortion(const Mission& mission);
+
+/// The projection of a mission onto its detector.
+SkyProjection make_projection(const Mission& mission);
+
+/// The PSF of a mission, accurate enough for its configuration. @throws InputError, EnvironmentError for a table
+std::shared_ptr<const PixelPsf> make_psf(const Mission& mission);
+
+}  // namespace astroid
