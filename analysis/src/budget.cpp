@@ -4,27 +4,12 @@
 #include <array>
 #include <cmath>
 
+#include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/photometric.hpp"
 #include "astroid/core/throughput.hpp"
 
 namespace astroid {
-
-namespace {
-
-/// The electrons at which the first pixel saturates: full well, or the end of the ADC's range.
-double saturation_electrons(const CcdSettings& ccd) {
-  const double top = std::ldexp(1.0, ccd.adc_bits) - 1.0;
-  return std::min(ccd.full_well.value(), ((Adu(top) - ccd.bias) * ccd.gain).value());
-}
-
-}  // namespace
-
-PixelNoise expected_pixel_noise(const Mission& mission) {
-  const ElectronsPerSecond rate = mean_throughput(mission) * mission.field.sky_background + mission.ccd.dark_current;
-  constexpr double kUniformVariance = 12.0;  // of a rounding error, 1/12
-  return {(rate * mission.simulation.exposure_time).value(), mission.ccd.readout_noise.value(),
-          mission.ccd.gain.value() / std::sqrt(kUniformVariance)};
-}
 
 StarEstimator estimator_of_first(const Mission& mission, const PixelPsf& psf, std::span<const FieldStar> stars) {
   const PhotometrySettings& photometry = mission.photometry;
@@ -61,7 +46,7 @@ std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& p
         mean_throughput(mission) *
         (electron_rate(Magnitude(magnitude), mission.telescope.zero_point) * mission.simulation.exposure_time).value();
     row.peak_electrons = row.electrons * peak;
-    row.saturated = row.peak_electrons + background >= saturation_electrons(mission.ccd);
+    row.saturated = row.peak_electrons + background >= saturation_electrons(mission);
     std::vector<FieldStar> stars{FieldStar{"", {0.0, 0.0}, row.electrons}};
     stars.reserve(neighbours.size() + 1);
     for (const BudgetNeighbour& n : neighbours)

@@ -19,6 +19,14 @@ double ratio(double variance, double signal) {
 
 }  // namespace
 
+double PixelNoise::variance(double light) const {
+  if (ramp.reads <= 1) return light + (background + readout * readout + quantisation * quantisation);
+  const RampVariance fit = factors(light);
+  // Each read is rounded, and so is what is delivered.
+  return fit.photon * (light + background) + fit.readout * (readout * readout + quantisation * quantisation) +
+         quantisation * quantisation;
+}
+
 double ccd_equation_snr(const CcdEquation& terms) {
   const double adc = terms.gain * terms.adc_noise;
   const double per_pixel = terms.sky + terms.dark + terms.readout_noise * terms.readout_noise + adc * adc;
@@ -30,12 +38,11 @@ double nsr_exposure(std::span<const double> target, std::span<const double> tota
                     const PixelNoise& noise) {
   ASTROID_CHECK_EQ(target.size(), total.size());
   ASTROID_CHECK_EQ(target.size(), weights.size());
-  const double floor = noise.variance();
   double signal = 0.0;
   double variance = 0.0;
   for (std::size_t n = 0; n < target.size(); ++n) {
     signal += target[n] * weights[n];
-    variance += (total[n] + floor) * weights[n] * weights[n];
+    variance += noise.variance(total[n]) * weights[n] * weights[n];
   }
   return ratio(variance, signal);
 }
@@ -43,12 +50,11 @@ double nsr_exposure(std::span<const double> target, std::span<const double> tota
 double nsr_of_mask(std::span<const double> target, std::span<const double> total, std::span<const std::size_t> mask,
                    const PixelNoise& noise) {
   ASTROID_CHECK_EQ(target.size(), total.size());
-  const double floor = noise.variance();
   double signal = 0.0;
   double variance = 0.0;
   for (const std::size_t n : mask) {
     signal += target[n];
-    variance += total[n] + floor;
+    variance += noise.variance(total[n]);
   }
   return ratio(variance, signal);
 }
@@ -60,11 +66,10 @@ Ppm nsr_averaged(double nsr, double exposures, double cameras) {
 
 MaskGrowth grow_mask(std::span<const double> target, std::span<const double> total, const PixelNoise& noise) {
   ASTROID_CHECK_EQ(target.size(), total.size());
-  const double floor = noise.variance();
   std::vector<double> pixel_nsr(target.size());
   MaskGrowth growth;
   for (std::size_t n = 0; n < target.size(); ++n) {
-    pixel_nsr[n] = ratio(total[n] + floor, target[n]);
+    pixel_nsr[n] = ratio(noise.variance(total[n]), target[n]);
     if (pixel_nsr[n] < kInfinity) growth.order.push_back(n);  // neither without target flux nor NaN
   }
   std::stable_sort(growth.order.begin(), growth.order.end(),
@@ -82,7 +87,7 @@ MaskGrowth grow_mask(std::span<const double> target, std::span<const double> tot
   double variance = 0.0;
   for (const std::size_t n : growth.order) {
     signal += target[n];
-    variance += total[n] + floor;
+    variance += noise.variance(total[n]);
     growth.nsr.push_back(ratio(variance, signal));
   }
   return growth;
@@ -106,10 +111,9 @@ std::vector<std::size_t> optimal_binary_mask(std::span<const double> target, std
 std::vector<double> optimal_weights(std::span<const double> target, std::span<const double> total,
                                     const PixelNoise& noise) {
   ASTROID_CHECK_EQ(target.size(), total.size());
-  const double floor = noise.variance();
   std::vector<double> weights(target.size());
   for (std::size_t n = 0; n < target.size(); ++n) {
-    const double variance = total[n] + floor;
+    const double variance = noise.variance(total[n]);
     weights[n] = target[n] > 0.0 && variance > 0.0 ? target[n] / variance : 0.0;
   }
   const double largest = weights.empty() ? 0.0 : *std::max_element(weights.begin(), weights.end());

@@ -107,6 +107,8 @@ StarEstimator StarEstimatorBuilder::build(std::size_t star, const Rectangle& win
     return estimator;
   }
   add_background(target, used, estimator);
+  add_pattern_noise(used, estimator);
+  add_calibration_noise(estimator);
   if (fits_psf_) judge_blend(used, estimator);
   estimator.nsr_exposure = std::sqrt(estimator.budget.variance()) / estimator.budget.target;
   fill_gradients(star, neighbours, estimator);
@@ -152,6 +154,7 @@ void StarEstimatorBuilder::expected_in_window(std::size_t star, const Rectangle&
         add_star(*model_.psf, model_.stars[neighbour], stamps_[neighbour], window, contaminants_, scratch_);
   }
   for (std::size_t i = 0; i < pixels; ++i) total_[i] = target_[i] + contaminants_[i];
+  smear_window(window);
 }
 
 bool StarEstimatorBuilder::choose_weights(const FieldStar& star, const Rectangle& window) {
@@ -168,7 +171,7 @@ bool StarEstimatorBuilder::choose_weights(const FieldStar& star, const Rectangle
     case PhotometryMethod::kWeighted: {
       double sum = 0.0;
       for (std::size_t i = 0; i < weights_.size(); ++i) {
-        const double variance = total_[i] + noise_.variance();
+        const double variance = noise_.variance(total_[i]);
         weights_[i] = target_[i] > 0.0 ? target_[i] / variance : 0.0;
         sum += weights_[i];
       }
@@ -225,21 +228,30 @@ void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& e
   const double electrons = model_.stars[estimator.star].electrons;
   EstimatorBudget& budget = estimator.budget;
   double squares = 0.0;
+  double photon_squares = 0.0;
+  double readout_squares = 0.0;
   double static_prnu = 0.0;
+  const std::vector<double>& photon_weights = couple_weights(window);
   for (std::size_t i = 0; i < window.size(); ++i) {
     const double w = weights_[i];
     const double square = w * w;
+    const double photon_square = photon_weights[i] * photon_weights[i];
     budget.target += w * target_[i];
     budget.contaminants += w * contaminants_[i];
-    budget.var_target += square * target_[i];
-    budget.var_contaminants += square * contaminants_[i];
+    const RampVariance fit = noise.factors(total_[i]);
+    budget.var_target += fit.photon * photon_square * target_[i];
+    budget.var_contaminants += fit.photon * photon_square * contaminants_[i];
     squares += square;
-    const double light = fits_psf_ ? total_[i] : target_[i];
+    photon_squares += fit.photon * photon_square;
+    readout_squares += fit.readout * square;
+    const double light = fits_psf_ ? target_[i] + contaminants_[i] : target_[i];
     static_prnu += (w * light) * (w * light);
   }
-  budget.var_background = squares * noise.background;
-  budget.var_readout = squares * noise.readout * noise.readout;
-  budget.var_quantisation = squares * noise.quantisation * noise.quantisation;
+  budget.var_background = photon_squares * noise.background;
+  budget.var_readout = readout_squares * noise.readout * noise.readout;
+  budget.var_quantisation = readout_squares * noise.quantisation * noise.quantisation;
+  // A fitted ramp is rounded once more when it is delivered.
+  if (noise.ramp.reads > 1) budget.var_quantisation += squares * noise.quantisation * noise.quantisation;
   if (!(budget.target > 0.0)) return;
   // PSF weights: what the neighbours are believed to leave is no part of the flux.
   if (fits_psf_) estimator.offset = std::exchange(budget.contaminants, 0.0);
@@ -307,7 +319,6 @@ void StarEstimatorBuilder::choose_annulus(const FieldStar& star, const Rectangle
   const std::span<const double> light = light_.pixels();
   std::stable_sort(found_.begin(), found_.end(), [light](std::size_t a, std::size_t b) { return light[a] < light[b]; });
   // From the darkest pixel on, take as many as make the mean best: noise falls, doubt of the star light rises.
-  const double noise_variance = noise_.variance();
   double star_light = 0.0;
   double best_error = std::numeric_limits<double>::infinity();
   std::size_t best_count = 0;
@@ -316,13 +327,14 @@ void StarEstimatorBuilder::choose_annulus(const FieldStar& star, const Rectangle
     star_light += light[found_[k]];
     const auto count = static_cast<double>(k + 1);
     const double doubt = model_.flux_doubt * star_light / count;
-    const double error = (star_light / count + noise_variance) / count + doubt * doubt;
+    const double error = noise_.variance(star_light / count) / count + doubt * doubt;
     if (k + 1 < kFewestBackgroundPixels || error >= best_error) continue;
     best_error = error;
     best_count = k + 1;
     annulus_.star_light = star_light;
     annulus_.doubt = doubt;
   }
+  const double noise_variance = noise_.variance();
   const double worst = kWorstBackgroundError * kWorstBackgroundError * noise_variance;
   annulus_.usable = best_count > 0 && (best_error <= worst || !(noise_variance > 0.0));
   annulus_.error = std::sqrt(best_error);
@@ -336,7 +348,8 @@ void StarEstimatorBuilder::add_local_background(double weight_sum, StarEstimator
   for (const std::size_t pixel : found_) estimator.terms.push_back({static_cast<std::uint32_t>(pixel), weight});
   estimator.offset += -weight_sum * annulus_.star_light / count;
   estimator.budget.var_background_estimate =
-      (weight_sum / count) * (weight_sum / count) * (count * noise_.variance() + annulus_.star_light);
+      (weight_sum / count) * (weight_sum / count) *
+      (count * noise_.variance() + noise_.factors(annulus_.star_light / count).photon * annulus_.star_light);
 }
 
 void StarEstimatorBuilder::differentiate(std::size_t star, const Rectangle& box,

@@ -110,4 +110,15 @@ double clip_full_well(const ImageView<double, unit::SampledElectrons>& electrons
   return removed;
 }
 
+double clip_full_well(std::span<double> electrons, double full_well, std::span<std::uint8_t> flags) {
+  double removed = 0.0;
+  for (std::size_t i = 0; i < electrons.size(); ++i) {
+    if (!(electrons[i] >= full_well)) continue;
+    removed += electrons[i] - full_well;
+    electrons[i] = full_well;
+    flags[i] |= pixel_flag::kFullWell;
+  }
+  return removed;
+}
+
 }  // namespace astroid

@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <utility>
 
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/digitise.hpp"
+#include "astroid/core/plane_kernels.hpp"
 
 namespace astroid {
 
@@ -42,10 +45,13 @@ void fill_header(const Scene& scene, int camera, std::int64_t exposure, FrameHea
   header.mid_mjd = mission.simulation.start_mjd + header.mid_time.value() / kSecondsPerDay;
   header.exposure_time = mission.simulation.exposure_time;
   header.gain = mission.ccd.gain;
-  header.readout_noise = mission.ccd.readout_noise;
+  // Of a fitted ramp: the noise that the fit leaves, and the range of what is delivered.
+  header.readout_noise = mission.ccd.readout_noise * fitted_readout_factor(mission);
   header.bias = mission.ccd.bias;
-  header.saturation =
-      std::min(mission.ccd.full_well / mission.ccd.gain + mission.ccd.bias, Adu(adc_top(mission.ccd.adc_bits)));
+  const Adu top(adc_top(delivered_bits(mission)));
+  header.saturation = std::min(mission.ccd.full_well / mission.ccd.gain + mission.ccd.bias, top);
+  if (ramp_noise(mission).reads > 1)
+    header.saturation = std::min(Electrons(saturation_electrons(mission)) / mission.ccd.gain + mission.ccd.bias, top);
 }
 
 }  // namespace
@@ -55,7 +61,11 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
   const JitterTreatment treatment = plan.knobs.jitter;
   if (treatment == JitterTreatment::kNone) return series;
   series->steps = plan.knobs.attitude_steps;
-  scene.attitude().for_each_exposure(
+  // What the plan leaves out is left out here too.
+  const AttitudeParts parts{.jitter = plan.runs("jitter-model") || plan.runs("jitter-file"),
+                            .drift = plan.runs("drift"),
+                            .repointing = plan.runs("re-pointing")};
+  scene.attitude(parts)->for_each_exposure(
       scene.mission().simulation.exposures, series->steps, [&](std::span<const Attitude> exposure) {
         series->moments.push_back(attitude_moments(exposure));
         for (const Attitude& a : exposure)
@@ -98,7 +108,7 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
     still_->get(0, [this] { return render({}, conditions_of(*plan_, *scene_, 0)); });
   }
   if (plan_->knobs.jitter == JitterTreatment::kPolynomial)
-    moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial);
+    moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial, plan_->layout->size());
   stages_ = make_stages(source(), false);
 }
 
@@ -129,12 +139,21 @@ std::vector<Simulator::Step> Simulator::expected_steps(Source source) const {
   return steps;
 }
 
-std::vector<Simulator::Stage> Simulator::make_stages(Source source, bool until_expected) const {
+bool Simulator::reads_by_strips() const {
+  return std::ranges::all_of(plan_->effects, [](const PlannedEffect& e) {
+    return !e.need.needed || !e.effect->spec().per_read || is_local(e.effect->spec());
+  });
+}
+
+std::vector<Simulator::Stage> Simulator::make_stages(Source source, bool until_expected, bool whole_frame) const {
+  // A strip sees all its reads while it is in the cache, unless something between them needs more than a strip.
+  const bool by_strips = !whole_frame && reads_by_strips();
   std::vector<Stage> stages;
   const auto add = [&](Step step) {
     const EffectSpec& spec = plan_->effects[step.effect].effect->spec();
     const bool local = step.act != Act::kApply || is_local(spec);
-    const bool per_read = plan_->reads > 1 && spec.per_read;
+    step.per_read = plan_->reads > 1 && spec.per_read;
+    const bool per_read = step.per_read && !by_strips;
     if (stages.empty() || stages.back().local != local || stages.back().per_read != per_read)
       stages.push_back({.local = local, .per_read = per_read, .steps = {}});
     stages.back().steps.push_back(step);
@@ -170,11 +189,15 @@ ExposureState Simulator::make_state() const {
   std::uint32_t whole = 0;
   for (const Stage& stage : stages_)
     for (const Step& step : stage.steps)
-      if (!stage.local || plan_->reads > 1)
+      if (!stage.local || stage.per_read)
         whole |= plan_->effects[step.effect].effect->spec().reads | plan_->effects[step.effect].effect->spec().writes;
   if ((whole & plane_bit::kExpected) != 0) state.expected.make_whole();
   if ((whole & plane_bit::kSampled) != 0) state.sampled.make_whole();
   if ((whole & plane_bit::kAnalog) != 0) state.analog.make_whole();
+  if (plan_->reads > 1) {
+    state.ramps = RampPlanes(layout, longest_strip_);
+    if ((whole & plane_bit::kRamp) != 0) state.ramps.make_whole();
+  }
   return state;
 }
 
@@ -188,6 +211,7 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.still = false;
   state.lost_electrons = 0.0;
   state.clipped_pixels = 0;
+  state.ringing = {};
   std::ranges::fill(state.computed().flags.pixels(), std::uint8_t{0});
   fill_header(*scene_, camera_.camera, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);
@@ -213,12 +237,13 @@ void Simulator::simulate(std::int64_t exposure, ExposureState& state, const Step
     state.expected.make_whole();
     state.sampled.make_whole();
     state.analog.make_whole();
+    if (plan_->reads > 1) state.ramps.make_whole();
     for (const PlannedEffect& planned : plan_->effects)
       if (planned.need.needed && is_pointing(planned.effect->spec())) observer(planned.effect->spec(), state);
     // What is recalled has no steps to see; they are shown as rendered, and the exposure goes on from what it has.
     if (source() == Source::kRecall) run(make_stages(Source::kRender, true), state, observer);
   }
-  run(stages_, state, observer);
+  run(observer ? make_stages(source(), false, true) : stages_, state, observer);
   deliver(state);
 }
 
@@ -291,7 +316,19 @@ void Simulator::run(const Stage& stage, ExposureState& state, const StepObserver
   }
   for (const Strip& strip : camera_.strips) {
     last = Clock::now();
-    for (const Step& step : stage.steps) timed(step, strip);
+    if (stage.per_read || plan_->reads == 1) {
+      for (const Step& step : stage.steps) timed(step, strip);
+      continue;
+    }
+    for (auto step = stage.steps.begin(); step != stage.steps.end();) {
+      const auto next =
+          std::find_if(step, stage.steps.end(), [&](const Step& s) { return s.per_read != step->per_read; });
+      const int reads = step->per_read ? plan_->reads : 1;
+      for (state.read = 0; state.read < reads; ++state.read)
+        for (auto again = step; again != next; ++again) timed(*again, strip);
+      state.read = 0;
+      step = next;
+    }
   }
 }
 
@@ -302,6 +339,16 @@ const Strip& Simulator::exposed_or_whole(const Step& step) const {
 bool Simulator::is_for(const Step& step, const Strip& strip) const {
   return strip.exposed || step.act != Act::kApply ||
          plan_->effects[step.effect].effect->spec().pixels == PixelSet::kAll;
+}
+
+void Simulator::take_expected(ExposureState& state, const Strip& strip) const {
+  // Without shot noise a pixel holds what is expected of it: all of it, or what has come until this read.
+  if (plan_->reads > 1) {
+    const double share = static_cast<double>(state.read) / (plan_->reads - 1);
+    scale_values(state.expectation(strip), share, state.sampled.pixels(strip));
+  } else {
+    std::ranges::copy(state.expectation(strip), state.sampled.pixels(strip).begin());
+  }
 }
 
 void Simulator::take(const Step& step, ExposureState& state, const Strip& strip) const {
@@ -333,8 +380,7 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
       return;
     }
     case Act::kTakeExpected:
-      // Without shot noise a pixel holds what is expected of it.
-      std::ranges::copy(state.expectation(strip), state.sampled.pixels(strip).begin());
+      take_expected(state, strip);
       return;
   }
 }
@@ -342,14 +388,25 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
 void Simulator::deliver(ExposureState& state) const {
   if (state.more == nullptr) return;
   const PixelLayout& delivered = *scene_->layout();
+  const PixelLayout& computed = *plan_->layout;
   for (std::size_t r = 0; r < delivered.regions().size(); ++r) {
     const Rectangle& region = delivered.regions()[r];
-    const auto first = static_cast<std::size_t>(region.x0 - plan_->layout->regions()[r].x0);
+    // Exposed regions keep their order, unless all of the detector is computed; reference regions are joined anew.
+    const std::span<const Rectangle> exposed = computed.exposed_regions();
+    const bool whole = exposed.size() == 1 && exposed.front() == scene_->detector();
+    std::size_t from = whole ? 0 : r;
+    if (r >= delivered.exposed_regions().size()) {
+      const auto holds = [&](const Rectangle& area) { return intersect(area, region) == region; };
+      const auto found = std::ranges::find_if(computed.reference_regions(), holds);
+      ASTROID_CHECK_EQ(found != computed.reference_regions().end(), true);
+      from = exposed.size() + static_cast<std::size_t>(found - computed.reference_regions().begin());
+    }
+    const auto first = static_cast<std::size_t>(region.x0 - computed.regions()[from].x0);
     for (int y = region.y0; y < region.y1(); ++y) {
       const auto width = static_cast<std::size_t>(region.nx);
-      std::ranges::copy(state.more->pixels.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->pixels.view(from).row(y).subspan(first, width),
                         state.frame.pixels.view(r).row(y).begin());
-      std::ranges::copy(state.more->flags.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->flags.view(from).row(y).subspan(first, width),
                         state.frame.flags.view(r).row(y).begin());
     }
   }

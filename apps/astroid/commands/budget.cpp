@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "astroid/core/csv.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/reports/tables.hpp"
 #include "astroid/sim/scene.hpp"
@@ -63,7 +64,8 @@ int budget(const BudgetOptions& options) {
   std::vector<double> magnitudes;
   const auto steps = static_cast<int>(std::floor((options.mag_to - options.mag_from) / options.mag_step + 1e-9));
   for (int i = 0; i <= steps; ++i) magnitudes.push_back(options.mag_from + i * options.mag_step);
-  const std::vector<BudgetRow> rows = analytic_budget(mission, *make_psf(mission), magnitudes, neighbours);
+  const std::vector<BudgetRow> rows = analytic_budget(
+      mission, *imaged_psf(mission, make_recorded_psf(mission, make_psf(mission))), magnitudes, neighbours);
 
   fmt::print("{} at the centre of a pixel; noise in {:g} h with {} camera(s), ppm\n\n",
              neighbours.empty() ? "Isolated star" : "Star with neighbours", mission.analysis.bin.value() / 3600.0,

@@ -32,6 +32,13 @@ struct AssessOptions {
 int assess(const AssessOptions& options);
 int simulate(const AssessOptions& options);
 
+struct FocalPlaneCommand {
+  AssessOptions run;
+  int across = 3, down = 3, side = 200;
+  std::optional<double> magnitude;
+};
+int focal_plane(const FocalPlaneCommand& options);
+
 struct PlanOptions {
   ConfigurationOptions configuration;
   bool json = false;
@@ -53,6 +60,7 @@ struct PhotometryOptions {
   std::string catalogue;
   std::string method = "aperture";
   std::string psf;  ///< file or gaussian:SIGMA_PX
+  bool ignore_overscan = false;
   std::optional<double> radius, gain, read_noise, saturation, zero_point, exposure_time;
   std::string background = "local";  ///< local, mesh or a number of ADU
   std::string output = "sources.csv";

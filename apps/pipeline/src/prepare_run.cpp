@@ -5,11 +5,15 @@
 #include <vector>
 
 #include "astroid/analysis/budget.hpp"
+#include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/detector_noise.hpp"
+#include "astroid/core/throughput.hpp"
 #include "astroid/pipeline/calibrate.hpp"
 #include "astroid/pipeline/field.hpp"
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run.hpp"
+#include "astroid/sim/smearing.hpp"
 
 namespace astroid {
 
@@ -45,23 +49,65 @@ double faintest_of(const Scene& scene, std::span<const std::size_t> stars) {
 std::vector<double> target_backgrounds(const Scene& scene) {
   const Mission& mission = scene.mission();
   std::vector<double> backgrounds;
-  if (mission.telescope.vignetting.model == VignettingModel::kNone) return backgrounds;
-  const Seconds exposure = mission.simulation.exposure_time;
+  const double passed = mean_throughput(mission);  // which the light has, and the response too
+  if (mission.telescope.vignetting.model == VignettingModel::kNone || !(passed > 0.0)) return backgrounds;
+  const ElectronsPerSecond light = mean_background_rate(mission);
   for (const std::size_t target : scene.targets())
-    backgrounds.push_back((scene.stars()[target].response * (mission.field.sky_background * exposure) +
-                           mission.ccd.dark_current * exposure)
-                              .value());
+    backgrounds.push_back(expected_pixel_noise(mission, scene.stars()[target].response / passed * light).background);
   return backgrounds;
 }
 
+void believe_readout(const Scene& scene, GroundModel& model) {
+  const CcdSettings& ccd = scene.mission().ccd;
+  const FrameCalibration calibration(*scene.layout(), calibration_model(scene.mission()));
+  model.smearing.electrons = smeared_electrons(scene);
+  model.smearing.overscan_rows = calibration.overscan_rows();
+  model.bias_variance = calibration.bias_variance();
+  model.bias_is_measured = scene.mission().photometry.calibration.bias == BiasSource::kPrescan;
+  const double row_offset = ccd.electronics.row_offset * ccd.gain.value();
+  model.row_offset_variance = row_offset * row_offset;
+  model.nodes = ReadoutNodes(scene.detector(), ccd.nodes.count);
+  const double variance = ccd.readout_noise.value() * ccd.readout_noise.value();
+  for (std::size_t node = 0; node < ccd.nodes.noise_factor.size(); ++node) {
+    const double factor = ccd.nodes.noise_factor[node];
+    model.more_readout_variance[node] = variance * (factor * factor - 1.0);
+  }
+}
+
 }  // namespace
+
+std::shared_ptr<const PixelPsf> psf_in_images(const Scene& scene) {
+  return imaged_psf(scene.mission(), {std::shared_ptr<const void>(), &scene.psf()});
+}
+
+CalibrationModel calibration_model(const Mission& mission) {
+  const CcdSettings& ccd = mission.ccd;
+  const CalibrationSettings& calibration = mission.photometry.calibration;
+  CalibrationModel model;
+  model.detector = {0, 0, ccd.columns, ccd.rows};
+  model.nodes = ccd.nodes.count;
+  model.gain = ccd.gain;
+  model.bias = ccd.bias;
+  double noisiest = 1.0;
+  for (const double factor : ccd.nodes.noise_factor) noisiest = std::max(noisiest, factor);
+  model.readout_noise = noisiest * ccd.readout_noise;
+  model.measure_bias = calibration.bias == BiasSource::kPrescan;
+  model.subtract_smearing = calibration.smearing;
+  if (calibration.nonlinearity) {
+    const std::vector<double>& believed = calibration.nonlinearity_coefficients;
+    model.response = make_response(believed.empty() ? ccd.electronics.nonlinearity : believed);
+  }
+  if (calibration.gain) std::ranges::copy(ccd.nodes.gain_factor, model.gain_factors.begin());
+  return model;
+}
 
 Ground perfect_ground(const Scene& scene) {
   Ground ground;
   ground.stars = field_stars(scene);
   ground.model.stars = ground.stars;
   ground.model.targets = scene.targets();
-  ground.model.psf = &scene.psf();
+  ground.psf = psf_in_images(scene);
+  ground.model.psf = ground.psf.get();
   ground.model.noise = expected_pixel_noise(scene.mission());
   ground.backgrounds = target_backgrounds(scene);
   ground.model.backgrounds = ground.backgrounds;
@@ -76,6 +122,7 @@ Ground perfect_ground(const Scene& scene) {
       motion_like_pixel_noise(mean_bin_motion(scene, targets), setup.exposures_per_bin, setup.cameras);
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
+  believe_readout(scene, ground.model);
   return ground;
 }
 

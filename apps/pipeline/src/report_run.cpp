@@ -10,9 +10,11 @@
 #include "astroid/analysis/contamination.hpp"
 #include "astroid/analysis/target_metrics.hpp"
 #include "astroid/analysis/verdict.hpp"
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/pipeline/field.hpp"
+#include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run_record.hpp"
 #include "astroid/reports/report.hpp"
@@ -26,22 +28,6 @@ constexpr double kSecondsPerHour = 3600.0;
 constexpr std::size_t kListedNeighbours = 3;
 constexpr double kNeighbourReach = 12.0;  ///< px; farther neighbours put no light worth a line into an aperture
 constexpr std::size_t kShownLightCurves = 6;
-
-/// Rows of targets.csv.
-std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup& setup) {
-  const Scene& scene = *run.prepared.scene;
-  const std::vector<TruthStar> truth = truth_of(scene);
-  const std::vector<StarMotion> motions = target_motions(scene);
-  std::vector<TargetMetrics> targets;
-  targets.reserve(run.estimators.size());
-  for (std::size_t t = 0; t < run.estimators.size(); ++t) {
-    const StarEstimator& estimator = run.estimators[t];
-    TargetMetrics target = predict_target(truth[estimator.star], estimator, motions[t], setup);
-    add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
-    targets.push_back(std::move(target));
-  }
-  return targets;
-}
 
 /// photometry/sources.csv: the mean flux of every target over the run.
 void write_mean_sources(const std::filesystem::path& path, const MeasuredRun& run,
@@ -95,7 +81,7 @@ std::vector<BudgetRow> budget_rows(const Scene& scene) {
   }
   std::vector<double> magnitudes;
   for (double m = std::floor(2.0 * bright) / 2.0; m <= faint + 0.5; m += 0.5) magnitudes.push_back(m);
-  return analytic_budget(scene.mission(), scene.psf(), magnitudes);
+  return analytic_budget(scene.mission(), *psf_in_images(scene), magnitudes);
 }
 
 /// Light curves of clean targets spread over the magnitudes, read back from the file.
@@ -143,6 +129,21 @@ std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const Tar
 }
 
 }  // namespace
+
+std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup& setup) {
+  const Scene& scene = *run.prepared.scene;
+  const std::vector<TruthStar> truth = truth_of(scene);
+  const std::vector<StarMotion> motions = target_motions(scene);
+  std::vector<TargetMetrics> targets;
+  targets.reserve(run.estimators.size());
+  for (std::size_t t = 0; t < run.estimators.size(); ++t) {
+    const StarEstimator& estimator = run.estimators[t];
+    TargetMetrics target = predict_target(truth[estimator.star], estimator, motions[t], setup);
+    add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
 
 ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run) {
   const Scene& scene = *run.prepared.scene;

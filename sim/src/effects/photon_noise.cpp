@@ -2,7 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "astroid/core/math.hpp"
+#include "astroid/core/plane_kernels.hpp"
+#include "astroid/sim/scene.hpp"
 #include "effects/pixel_pattern.hpp"
 
 namespace astroid {
@@ -17,7 +21,27 @@ EffectNeed PhotonNoise::is_needed(const SceneSummary& scene) const {
 }
 
 void PhotonNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  pixel_poisson(context.stream, noise_of(strip, state.exposure), state.expectation(strip), state.sampled.pixels(strip));
+  const Mission& mission = context.scene.mission();
+  const int reads = mission.simulation.type == DetectorType::kCmos ? mission.cmos.reads : 1;
+  const std::span<double> sampled = state.sampled.pixels(strip);
+  PixelPlaces places = noise_of(strip, state.exposure);
+  if (reads <= 1) {
+    pixel_poisson(context.stream, places, state.expectation(strip), sampled);
+    return;
+  }
+  if (state.read == 0) {  // at the beginning of the exposure
+    std::ranges::fill(sampled, 0.0);
+    return;
+  }
+  // What has come since the read before.
+  const std::size_t size = strip.size();
+  state.scratch.resize(2 * size);
+  const std::span<double> mean = std::span(state.scratch).first(size);
+  const std::span<double> counts = std::span(state.scratch).last(size);
+  scale_values(state.expectation(strip), 1.0 / (reads - 1), mean);
+  places.read = static_cast<std::uint16_t>(state.read);
+  pixel_poisson(context.stream, places, mean, counts);
+  for (std::size_t i = 0; i < size; ++i) sampled[i] += counts[i];
 }
 
 }  // namespace astroid

@@ -5,7 +5,8 @@
 
 namespace astroid {
 
-/// Draws the electrons of each pixel from the Poisson distribution of its expectation, by inverting one uniform.
+/// Draws the electrons of each pixel from the Poisson distribution of its expectation, by inverting one uniform. Of an
+/// exposure with several reads it draws what each adds to the one before, from its share of the expectation.
 class PhotonNoise final : public Effect {
  public:
   static constexpr EffectSpec kSpec{"photon-noise",

@@ -18,14 +18,16 @@ inline PixelPlaces noise_of(const Strip& strip, std::int64_t exposure) {
 }
 
 /// Fills a plane with value(normal), the same in every exposure: addressed by detector pixel, so a window has the
-/// pattern of the full frame.
+/// pattern of the full frame. @param draw  another one where the effect draws from exposure 0 besides.
 template <class Unit, class Value>
-void draw_fixed_pattern(const RandomStream& stream, Plane<float, Unit>& plane, Value&& value) {
+void draw_fixed_pattern(const RandomStream& stream, Plane<float, Unit>& plane, Value&& value, std::uint16_t draw = 0) {
   constexpr std::size_t kAtOnce = 8192;
   std::vector<float> normals;
   for (const Strip& strip : make_strips(plane.layout(), kAtOnce)) {
     normals.resize(strip.size());
-    pixel_normals(stream, noise_of(strip, 0), normals);
+    PixelPlaces places = noise_of(strip, 0);
+    places.draw = draw;
+    pixel_normals(stream, places, normals);
     std::ranges::transform(normals, plane.pixels().subspan(strip.begin, strip.size()).begin(),
                            [&](float normal) { return static_cast<float>(value(static_cast<double>(normal))); });
   }

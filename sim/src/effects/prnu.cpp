@@ -6,6 +6,7 @@
 
 #include "astroid/core/plane_kernels.hpp"
 #include "astroid/sim/scene.hpp"
+#include "effects/need.hpp"
 #include "effects/pixel_pattern.hpp"
 
 namespace astroid {
@@ -13,16 +14,7 @@ namespace astroid {
 EffectNeed Prnu::is_needed(const SceneSummary& scene) const {
   const double rms = scene.mission->ccd.prnu;
   if (rms <= 0.0) return {false, "the pixel response is uniform (PRNU 0)", 0.0, 0.0};
-  // The largest error of a flux is that of a star whose light is all in one pixel.
-  const double bias = rms * scene.brightest_target_electrons;
-  const double gradient = rms * scene.psf.gradient * scene.attitude_rms_px;
-  const double flux = scene.brightest_target_electrons;
-  const double variance_ratio = flux > 0.0 ? gradient * gradient / scene.relative_variance_in_bin(flux) : 0.0;
-  const bool needed = rms > scene.accuracy || variance_ratio > kVarianceTolerance;
-  return {needed,
-          fmt::format("{:.3g} % rms changes each flux by up to {:.3g} ppm, the accuracy asked for is {:.3g} ppm",
-                      100.0 * rms, 1e6 * rms, 1e6 * scene.accuracy),
-          bias, variance_ratio};
+  return response_need(scene, rms, fmt::format("{:.3g} % rms", 100.0 * rms));
 }
 
 void Prnu::prepare(CameraState& camera, const PrepareContext& context) const {

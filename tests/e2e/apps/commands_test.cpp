@@ -30,8 +30,8 @@ class Commands : public testing::Test {
 };
 
 TEST_F(Commands, ExplainThemselves) {
-  for (const char* command : {"assess", "simulate", "photometry", "analyse", "plan", "budget", "field", "init",
-                              "validate", "explain", "doctor"}) {
+  for (const char* command : {"assess", "simulate", "focal-plane", "photometry", "analyse", "plan", "budget", "field",
+                              "init", "validate", "explain", "doctor"}) {
     for (const char* flag : {"-h", "--help"})
       EXPECT_THAT(said({command, flag}), AllOf(HasSubstr("Usage: astroid " + std::string(command)), HasSubstr("-h")));
     EXPECT_THAT(said({"-h"}), HasSubstr(command));
@@ -123,7 +123,7 @@ TEST_F(Commands, FieldMakesAFieldAndExtendsItAndARunUsesIt) {
 }
 
 TEST_F(Commands, InitWritesAPresetThatIsValid) {
-  for (const std::string name : {"plato", "plato-week"}) {
+  for (const std::string name : {"plato", "plato-week", "cmos"}) {
     const std::string file = name + ".xml";
     EXPECT_THAT(said({"init", name}), HasSubstr("astroid assess " + file));
     EXPECT_EQ(test::read_file(folder_.path() / file), test::read_file(test::source_dir() / "apps/missions" / file));

@@ -38,5 +38,17 @@ TEST(EffectTable, OfTheCcdIsConsistent) {
   EXPECT_EQ(specs.back().name, "adc");
 }
 
+TEST(EffectTable, OfCmosIsConsistentAndReadsBetweenPhotonsAndTheFit) {
+  std::vector<EffectSpec> specs;
+  for (const auto& effect : effect_table(DetectorType::kCmos)) specs.push_back(effect->spec());
+  EXPECT_TRUE(is_consistent(specs));
+  EXPECT_EQ(specs.back().name, "ramp-fit");
+  bool begun = false;
+  for (const EffectSpec& spec : specs) {
+    begun = begun || spec.name == "photon-noise";
+    EXPECT_EQ(spec.per_read, begun && spec.name != "ramp-fit") << spec.name;
+  }
+}
+
 }  // namespace
 }  // namespace astroid

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "astroid/analysis/target_metrics.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/mission.hpp"
 #include "astroid/core/psf.hpp"
 #include "astroid/photometry/estimator.hpp"
@@ -38,9 +39,6 @@ struct BudgetNeighbour {
 /// @throws InputError when the photometry's settings contradict themselves.
 std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& psf, std::span<const double> magnitudes,
                                        std::span<const BudgetNeighbour> neighbours = {});
-
-/// Sky and dark current of one exposure, readout and quantisation noise of the mission's detector.
-PixelNoise expected_pixel_noise(const Mission& mission);
 
 /// The estimator of the first star in a field of its own: pixels all around it as far as its photometry reaches, the
 /// other stars as neighbours. Positions as on any frame.

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "astroid/core/ramp.hpp"
 #include "astroid/core/units.hpp"
 
 namespace astroid {
@@ -15,7 +16,20 @@ struct PixelNoise {
   double background = 0.0;    ///< expected sky + dark, e- per pixel and exposure
   double readout = 0.0;       ///< e- rms
   double quantisation = 0.0;  ///< e- rms, gain / sqrt(12)
-  [[nodiscard]] double variance() const { return background + readout * readout + quantisation * quantisation; }
+  RampNoise ramp{};           ///< how often the pixel is read; `readout` and `quantisation` are of one read
+  double column = 0.0;        ///< e- rms of one read that all pixels of a column share; no part of variance()
+  double row = 0.0;           ///< the same of a row
+  /// Share of a pixel's signal in each neighbour at its sides and corners (F91), which correlates photon noise.
+  double side_coupling = 0.0, corner_coupling = 0.0;
+
+  /// Variance of a pixel without stars, e-².
+  [[nodiscard]] double variance() const { return variance(0.0); }
+  /// Variance of a pixel in which stars are expected to give `light` e-, e-².
+  [[nodiscard]] double variance(double light) const;
+  /// What the fit of a ramp makes of photon and readout noise in such a pixel; 1 and 1 for a single read.
+  [[nodiscard]] RampVariance factors(double light) const {
+    return ramp.variance(light + background, readout * readout + quantisation * quantisation);
+  }
 };
 
 /// The terms of the CCD equation, electrons per exposure.

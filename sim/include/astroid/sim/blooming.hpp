@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "astroid/core/image.hpp"
 
@@ -23,5 +24,8 @@ double bloom(const ImageView<double, unit::SampledElectrons>& electrons, double 
 /// Clips at the full well without spilling; flags pixels that were full. @returns electrons removed.
 double clip_full_well(const ImageView<double, unit::SampledElectrons>& electrons, double full_well,
                       const ImageView<std::uint8_t, unit::Flags>* flags = nullptr);
+
+/// The same of pixels one after the other.
+double clip_full_well(std::span<double> electrons, double full_well, std::span<std::uint8_t> flags);
 
 }  // namespace astroid

@@ -69,22 +69,26 @@ class Simulator {
   };
   struct Step {
     Act act;
-    std::size_t effect;  ///< of the plan, or the one that the time is put down to
+    std::size_t effect;     ///< of the plan, or the one that the time is put down to
+    bool per_read = false;  ///< taken again for every read of an exposure
   };
   /// Steps that run one after the other on each strip, or on the whole frame.
   struct Stage {
     bool local;
-    bool per_read;
+    bool per_read;  ///< the stage and its neighbours of the same kind are run again for every read
     std::vector<Step> steps;
   };
 
-  [[nodiscard]] std::vector<Stage> make_stages(Source source, bool until_expected) const;
+  /// @param whole_frame  each step sees the whole frame, as an observer wants it.
+  [[nodiscard]] std::vector<Stage> make_stages(Source source, bool until_expected, bool whole_frame = false) const;
+  [[nodiscard]] bool reads_by_strips() const;
   [[nodiscard]] std::vector<Step> expected_steps(Source source) const;
   [[nodiscard]] Source source() const;
   [[nodiscard]] bool varies() const;
   void begin(std::int64_t exposure, ExposureState& state) const;
   void run(const std::vector<Stage>& stages, ExposureState& state, const StepObserver& observer = {}) const;
   void run(const Stage& stage, ExposureState& state, const StepObserver& observer) const;
+  void take_expected(ExposureState& state, const Strip& strip) const;
   void take(const Step& step, ExposureState& state, const Strip& strip) const;
   [[nodiscard]] const Strip& exposed_or_whole(const Step& step) const;
   [[nodiscard]] bool is_for(const Step& step, const Strip& strip) const;

@@ -15,6 +15,10 @@ inline constexpr const char* kPlatoCatalogue = "catalogues/data/tycho2_lops2_8de
 
 inline constexpr const char* kPlatoBackground = "catalogues/data/lops2_faint_synthetic.csv";
 
+inline std::filesystem::path cmos_preset() {
+  return source_dir() / "apps/missions/cmos.xml";
+}
+
 inline std::filesystem::path plato_preset() {
   return source_dir() / "apps/missions/plato.xml";
 }

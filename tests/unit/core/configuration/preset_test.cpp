@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "astroid/core/configuration.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/error.hpp"
 #include "configuration_fixture.hpp"
 
@@ -90,6 +91,29 @@ TEST(WeekPreset, IsThePapersWeekWithTheCameraOfPlato) {
   EXPECT_EQ(week.ccd.adc_bits, plato.ccd.adc_bits);
 }
 
+// Kubik et al. 2025, arXiv:2507.11326, abstract: 0.52 ADU/e-, reset noise 23 ADU, readout noise of a frame 13 e-,
+// coupling of neighbours below 1 %.
+TEST(CmosPreset, HasTheDetectorOfItsSource) {
+  const ConfigurationSurroundings shipped{.overrides = {}, .data_folders = {test::source_dir()}};
+  const Mission cmos = read_configuration(test::cmos_preset(), shipped).mission;
+  EXPECT_EQ(cmos.simulation.type, DetectorType::kCmos);
+  EXPECT_NEAR(1.0 / cmos.ccd.gain.value(), 0.52, 0.005);
+  EXPECT_NEAR((cmos.cmos.reset_noise / cmos.ccd.gain).value(), 23.0, 0.5);
+  EXPECT_EQ(cmos.ccd.readout_noise, Electrons(13.0));
+  EXPECT_LT(cmos.cmos.coupling, 0.01);
+  // What the fit of its reads leaves in the dark: Vacca2004, 13 e- sqrt(12 (R - 1) / (R (R + 1))) of R = 16.
+  Mission dark = cmos;
+  dark.field.sky_background = ElectronsPerSecond(0.0);
+  dark.ccd.dark_current = ElectronsPerSecond(0.0);
+  EXPECT_NEAR(dark.ccd.readout_noise.value() * fitted_readout_factor(dark), 10.576, 0.001);
+  // Fields of both presets are the same, through the same optics.
+  const Mission plato = read_configuration(plato_preset(), shipped).mission;
+  EXPECT_EQ(cmos.telescope.zero_point, plato.telescope.zero_point);
+  EXPECT_EQ(cmos.psf.sigma, plato.psf.sigma);
+  EXPECT_EQ(cmos.field, plato.field);
+  EXPECT_EQ(cmos.ccd.pixel_scale, plato.ccd.pixel_scale);
+}
+
 class Preset : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(Preset, FindsItsCataloguesInTheSourceTree) {
@@ -118,7 +142,7 @@ TEST_P(Preset, NamesTheLineOfEveryParameterItGives) {
   EXPECT_GE(from_file, 40);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shipped, Preset, testing::Values(plato_preset(), test::week_preset()));
+INSTANTIATE_TEST_SUITE_P(Shipped, Preset, testing::Values(plato_preset(), test::week_preset(), test::cmos_preset()));
 
 }  // namespace
 }  // namespace astroid
