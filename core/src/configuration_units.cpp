@@ -21,7 +21,6 @@ constexpr std::array kConversions = {
     UnitConversion{"d", "h", 1, 24},
     UnitConversion{"d", "s", 1, 86400},
     UnitConversion{"yr", "yr", 1, 1},
-    UnitConversion{"yr", "yr", 1, 1},
     UnitConversion{"yr", "d", 4, 1461},
     UnitConversion{"deg", "deg", 1, 1},
     UnitConversion{"deg", "rad", 180, std::numbers::pi},

@@ -39,15 +39,19 @@ std::shared_ptr<const Distortion> make_distortion(const Mission& mission) {
   return nullptr;
 }
 
-SkyProjection make_projection(const Mission& mission) {
+CameraPointing make_pointing(const Mission& mission) {
   const CcdSettings& ccd = mission.ccd;
-  return SkyProjection(CameraPointing{.axis = {mission.satellite.ra.value(), mission.satellite.dec.value()},
-                                      .roll = mission.satellite.roll,
-                                      .scale = ccd.pixel_scale,
-                                      .axis_pixel = {ccd.axis_x, ccd.axis_y},
-                                      .projection = ccd.projection,
-                                      .distortion = make_distortion(mission),
-                                      .detector = {0, 0, ccd.columns, ccd.rows}});
+  return {.axis = {mission.satellite.ra.value(), mission.satellite.dec.value()},
+          .roll = mission.satellite.roll,
+          .scale = ccd.pixel_scale,
+          .axis_pixel = {ccd.axis_x, ccd.axis_y},
+          .projection = ccd.projection,
+          .distortion = make_distortion(mission),
+          .detector = {0, 0, ccd.columns, ccd.rows}};
+}
+
+SkyProjection make_projection(const Mission& mission) {
+  return SkyProjection(make_pointing(mission));
 }
 
 std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {

@@ -24,16 +24,20 @@ bool is_tabular(const Mission& mission) {
   return mission.psf.model == PsfModel::kGaussian || mission.psf.model == PsfModel::kTable;
 }
 
-/// Of the light after the diffusion of its charge, px.
+/// Of the Gaussian, charge diffusion included.
 double gaussian_sigma(const Mission& mission) {
   return det::hypot(mission.psf.sigma.value(), mission.psf.diffusion.value());
 }
 
+PsfTable given_table(const Mission& mission) {
+  PsfTable table = read_psf_table(mission.psf.file);
+  return mission.psf.diffusion.value() > 0.0 ? diffuse_psf_table(table, mission.psf.diffusion) : std::move(table);
+}
+
 PsfTable psf_table(const Mission& mission) {
   const double accuracy = kSplineShare * kPsfShare * 1e-6 * mission.simulation.accuracy.value();
-  const Pixels diffusion = mission.psf.diffusion;
   return mission.psf.model == PsfModel::kGaussian ? make_gaussian_table(gaussian_sigma(mission), accuracy)
-                                                  : diffuse_psf_table(read_psf_table(mission.psf.file), diffusion);
+                                                  : given_table(mission);
 }
 
 }  // namespace
@@ -109,9 +113,9 @@ std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& m
   const SubPixelSettings settings{.accuracy = gaussian ? std::min(accuracy, tight) : accuracy,
                                   .sub_pixels = mission.simulation.sub_pixels,
                                   .cells = has_intra_pixel_response(mission) ? mission.psf.intra_pixel.cells : 1};
-  return std::make_shared<const SubPixelRenderer>(gaussian ? make_gaussian_spectrum(gaussian_sigma(mission))
-                                                           : make_table_spectrum(read_psf_table(mission.psf.file)),
-                                                  Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
+  return std::make_shared<const SubPixelRenderer>(
+      gaussian ? make_gaussian_spectrum(gaussian_sigma(mission)) : make_table_spectrum(given_table(mission)),
+      Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
 }
 
 }  // namespace astroid

@@ -32,6 +32,7 @@ namespace {
 
 /// A star this far outside the frame gives less than this share of its light to it.
 constexpr double kNegligibleShare = 1e-12;
+constexpr double kPsfShare = 0.4;  ///< of the accuracy, see AccuracyShares
 
 /// Attitude is the spacecraft's: camera and detector stay out of the address, so cameras share it.
 RandomStream attitude_stream(const Mission& mission, StreamId effect) {
@@ -161,12 +162,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   repointing_ = repointing_error(satellite, mission_.simulation, attitude_stream(mission_, RepointingEffect::kSpec.id));
   trend_ = drift_ + repointing_;
   attitude_ = make_drifting_attitude(jitter_, trend_, mission_.simulation);
-  const CameraPointing pointing{.axis = {satellite.ra.value(), satellite.dec.value()},
-                                .roll = satellite.roll,
-                                .scale = ccd.pixel_scale,
-                                .axis_pixel = {ccd.axis_x, ccd.axis_y},
-                                .projection = ccd.projection};
-  projection_.emplace(make_projection(mission_));
+  const CameraPointing pointing = make_pointing(mission_);
+  projection_.emplace(pointing);
 
   if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
   constexpr double kSecondsPerDay = 86400.0;
@@ -327,20 +324,6 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   }
 }
 
-void Scene::add_ghost(const SceneStar& star, SkyPosition direction) {
-  const GhostSettings& settings = mission_.telescope.ghosts;
-  if (!(settings.fraction > 0.0) || !(star.magnitude < settings.brighter_than) || !(star.electrons > 0.0)) return;
-  const PixelPosition axis = projection_->axis_pixel();
-  Ghost ghost{.position = {2.0 * axis.x - star.position.x, 2.0 * axis.y - star.position.y},
-              .electrons = settings.fraction * star.electrons,
-              .motion = {}};
-  const auto farthest = grown(detector(), static_cast<int>(std::ceil(settings.radius.value())) + 2);
-  if (!inside(farthest, ghost.position)) return;
-  const AttitudeJacobian j = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
-  ghost.motion = {-j.dx_dyaw, -j.dx_dpitch, -j.dx_droll, -j.dy_dyaw, -j.dy_dpitch, -j.dy_droll};
-  ghosts_.push_back(ghost);
-}
-
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {
   if (mission_.field.variables.empty()) return;
   variables_ = read_variables(mission_.field.variables, 2.0 * middle_of_run(mission_.simulation).value());
@@ -398,6 +381,20 @@ std::shared_ptr<const AttitudeModel> Scene::attitude(const AttitudeParts& parts)
   const AttitudeTrend repointing = parts.repointing ? repointing_ : AttitudeTrend();
   return make_drifting_attitude(parts.jitter ? jitter_ : make_still_attitude(), drift + repointing,
                                 mission_.simulation);
+}
+
+void Scene::add_ghost(const SceneStar& star, SkyPosition direction) {
+  const GhostSettings& settings = mission_.telescope.ghosts;
+  if (!(settings.fraction > 0.0) || !(star.magnitude < settings.brighter_than) || !(star.electrons > 0.0)) return;
+  const PixelPosition axis = projection_->axis_pixel();
+  Ghost ghost{.position = {2.0 * axis.x - star.position.x, 2.0 * axis.y - star.position.y},
+              .electrons = settings.fraction * star.electrons,
+              .motion = {}};
+  const auto farthest = grown(detector(), static_cast<int>(std::ceil(settings.radius.value())) + 2);
+  if (!inside(farthest, ghost.position)) return;
+  const AttitudeJacobian j = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
+  ghost.motion = {-j.dx_dyaw, -j.dx_dpitch, -j.dx_droll, -j.dy_dyaw, -j.dy_dpitch, -j.dy_droll};
+  ghosts_.push_back(ghost);
 }
 
 Seconds Scene::mid_time(std::int64_t exposure) const {

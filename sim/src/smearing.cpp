@@ -5,6 +5,7 @@
 #include <map>
 
 #include "astroid/core/column_light.hpp"
+#include "astroid/core/throughput.hpp"
 #include "astroid/sim/scene.hpp"
 
 namespace astroid {
@@ -25,7 +26,9 @@ StarLight smeared_star(const Scene& scene, const SceneStar& star, double share) 
   constexpr double kSmallestLoss = 1e-9;
   constexpr double kLargestLoss = 0.5;
   const SceneSummary& summary = scene.summary();
-  const double smeared = star.electrons * share;
+  // The conditions' throughput is applied to whole columns.
+  const double passed = mean_throughput(scene.mission());
+  const double smeared = star.electrons * share / passed;
   const double allowed = kTruncation * summary.tightest_tolerance() / (summary.aperture_pixels * smeared);
   return {.centre = star.position,
           .electrons = smeared,
@@ -131,7 +134,7 @@ Plane<float, unit::ExpectedElectrons> missing_from_above(const Scene& scene,
 std::vector<double> smeared_electrons(const Scene& scene) {
   if (scene.mission().ccd.smearing.model == SmearingModel::kNone) return {};
   std::vector<double> electrons(static_cast<std::size_t>(scene.detector().nx));
-  SmearedColumns(scene, 0, scene.detector().nx).at({}, 1.0, 0, electrons);
+  SmearedColumns(scene, 0, scene.detector().nx).at({}, mean_throughput(scene.mission()), 0, electrons);
   return electrons;
 }
 

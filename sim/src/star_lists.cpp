@@ -40,7 +40,7 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
   double widest = 0.0;
   for (std::size_t i = 0; i < reach.size(); ++i) {
     const SceneStar& star = scene.stars()[i];
-    if (!(star.electrons > 0.0)) continue;
+    if (!(star.electrons > 0.0)) continue;  // so its response is not 0 either
     const bool constant = star.variability < 0;
     if (choice != StarChoice::kAll && constant != (choice == StarChoice::kConstant)) continue;
     reach[i] = knobs.stamp_half_width(star.electrons) + excursion(star, farthest) + kRounding;

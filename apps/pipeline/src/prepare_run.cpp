@@ -7,6 +7,7 @@
 #include "astroid/analysis/budget.hpp"
 #include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/detector_noise.hpp"
+#include "astroid/core/throughput.hpp"
 #include "astroid/pipeline/calibrate.hpp"
 #include "astroid/pipeline/field.hpp"
 #include "astroid/pipeline/ground.hpp"
@@ -44,6 +45,18 @@ double faintest_of(const Scene& scene, std::span<const std::size_t> stars) {
   return faintest;
 }
 
+/// Sky as the optics let it through at each target, and dark current.
+std::vector<double> target_backgrounds(const Scene& scene) {
+  const Mission& mission = scene.mission();
+  std::vector<double> backgrounds;
+  const double passed = mean_throughput(mission);  // which the light has, and the response too
+  if (mission.telescope.vignetting.model == VignettingModel::kNone || !(passed > 0.0)) return backgrounds;
+  const ElectronsPerSecond light = mean_background_rate(mission);
+  for (const std::size_t target : scene.targets())
+    backgrounds.push_back(expected_pixel_noise(mission, scene.stars()[target].response / passed * light).background);
+  return backgrounds;
+}
+
 void believe_readout(const Scene& scene, GroundModel& model) {
   const CcdSettings& ccd = scene.mission().ccd;
   const FrameCalibration calibration(*scene.layout(), calibration_model(scene.mission()));
@@ -59,19 +72,6 @@ void believe_readout(const Scene& scene, GroundModel& model) {
     const double factor = ccd.nodes.noise_factor[node];
     model.more_readout_variance[node] = variance * (factor * factor - 1.0);
   }
-}
-
-/// Sky as the optics let it through at each target, and dark current.
-std::vector<double> target_backgrounds(const Scene& scene) {
-  const Mission& mission = scene.mission();
-  std::vector<double> backgrounds;
-  if (mission.telescope.vignetting.model == VignettingModel::kNone) return backgrounds;
-  const Seconds exposure = mission.simulation.exposure_time;
-  for (const std::size_t target : scene.targets())
-    backgrounds.push_back((scene.stars()[target].response * (mission.field.sky_background * exposure) +
-                           mission.ccd.dark_current * exposure)
-                              .value());
-  return backgrounds;
 }
 
 }  // namespace

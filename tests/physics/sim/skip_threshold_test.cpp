@@ -124,6 +124,17 @@ INSTANTIATE_TEST_SUITE_P(
                    m.ccd.pixel_scale = PixelScale(v);
                  },
                  15.0},
+        SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); }, 10.0},
+        SkipCase{
+            "open-shutter-smearing",
+            [](Mission& m, double v) { m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(v)}; },
+            10.0},
+        SkipCase{"frame-transfer-smearing",
+                 [](Mission& m, double v) {
+                   m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(v)};
+                   m.ccd.smearing.clear_time = Seconds(0.0);
+                 },
+                 10.0},
         SkipCase{"throughput", [](Mission& m, double v) { m.telescope.throughput.beginning_of_life = 1.0 - v; }, 0.1},
         SkipCase{"breathing",
                  [](Mission& m, double v) { m.psf.breathing = {.amplitude = Pixels(v), .period = Seconds(42.0)}; },
@@ -140,17 +151,6 @@ INSTANTIATE_TEST_SUITE_P(
                    m.telescope.vignetting.polynomial = {v};
                  },
                  1.0},
-        SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); }, 10.0},
-        SkipCase{
-            "open-shutter-smearing",
-            [](Mission& m, double v) { m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(v)}; },
-            10.0},
-        SkipCase{"frame-transfer-smearing",
-                 [](Mission& m, double v) {
-                   m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(v)};
-                   m.ccd.smearing.clear_time = Seconds(0.0);
-                 },
-                 10.0},
         SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
     [](const testing::TestParamInfo<SkipCase>& parameter) {
       std::string name = parameter.param.effect;

@@ -77,6 +77,28 @@ std::vector<Switch> switches() {
          m.satellite.jitter.yaw = m.satellite.jitter.roll = Arcseconds(6.0);
          m.satellite.jitter.timescale = Seconds(3.0);
        }},
+      {"throughput",
+       [](Mission& m) {
+         m.telescope.throughput = {
+             .beginning_of_life = 0.7, .end_of_life = 0.1, .lifetime_years = 0.01, .age_years = 0.005};
+       }},
+      {"breathing", [](Mission& m) { m.psf.breathing = {.amplitude = Pixels(0.4), .period = Seconds(77.0)}; }},
+      {"vignetting",
+       [](Mission& m) {
+         m.ccd.pixel_scale = PixelScale(3000.0);
+         m.telescope.vignetting.model = VignettingModel::kCosineSquared;
+       }},
+      {"distortion",
+       [](Mission& m) {
+         m.telescope.distortion.model = DistortionModel::kRadial;
+         m.telescope.distortion.radial = {0.3, 0.02, 0.4};
+         m.telescope.distortion.tangential = {5e-4, 2e-4};
+       }},
+      {"ghosts",
+       [](Mission& m) {
+         m.telescope.ghosts = {.fraction = 0.01, .radius = Pixels(7.3), .brighter_than = Magnitude(12.0)};
+       }},
+      {"charge diffusion", [](Mission& m) { m.psf.diffusion = Pixels(0.3); }},
       {"drift", [](Mission& m) { m.satellite.drift.yaw_rate = Arcseconds(4000.0); }},
       {"re-pointing",
        [](Mission& m) {
@@ -118,28 +140,6 @@ std::vector<Switch> switches() {
          m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
          m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
        }},
-      {"throughput",
-       [](Mission& m) {
-         m.telescope.throughput = {
-             .beginning_of_life = 0.7, .end_of_life = 0.1, .lifetime_years = 0.01, .age_years = 0.005};
-       }},
-      {"breathing", [](Mission& m) { m.psf.breathing = {.amplitude = Pixels(0.4), .period = Seconds(77.0)}; }},
-      {"vignetting",
-       [](Mission& m) {
-         m.ccd.pixel_scale = PixelScale(3000.0);
-         m.telescope.vignetting.model = VignettingModel::kCosineSquared;
-       }},
-      {"distortion",
-       [](Mission& m) {
-         m.telescope.distortion.model = DistortionModel::kRadial;
-         m.telescope.distortion.radial = {0.3, 0.02, 0.4};
-         m.telescope.distortion.tangential = {5e-4, 2e-4};
-       }},
-      {"ghosts",
-       [](Mission& m) {
-         m.telescope.ghosts = {.fraction = 0.01, .radius = Pixels(7.3), .brighter_than = Magnitude(12.0)};
-       }},
-      {"charge diffusion", [](Mission& m) { m.psf.diffusion = Pixels(0.3); }},
       {"narrow PSF", [](Mission& m) { m.psf.sigma = Pixels(0.05); }},
       {"wide PSF", [](Mission& m) { m.psf.sigma = Pixels(4.5); }},
       {"rough", [](Mission& m) { m.simulation.accuracy = Ppm(10000.0); }},

@@ -40,7 +40,7 @@ ElectronsPerSecond rate_of_one_s10(const Mission& mission);
 ElectronsPerSecond sky_rate(const Mission& mission, ElectronsPerSecond rate, SkyPosition direction, Seconds time);
 
 /// What light from nowhere in the catalogue gives on average: the sky on the axis in the middle of the run, and stray
-/// light.
+/// light, times the mean throughput of the optics.
 ElectronsPerSecond mean_background_rate(const Mission& mission);
 
 /// Background and dark current of one exposure with that light, and the noise of reading it.

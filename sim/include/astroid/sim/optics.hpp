@@ -13,6 +13,9 @@ namespace astroid {
 /// The distortion of a mission; null where it has none. @throws InputError, EnvironmentError for a SIP file
 std::shared_ptr<const Distortion> make_distortion(const Mission& mission);
 
+/// Where a mission's camera points, and its distortion.
+CameraPointing make_pointing(const Mission& mission);
+
 /// The projection of a mission onto its detector.
 SkyProjection make_projection(const Mission& mission);
 

@@ -97,9 +97,9 @@ class Scene {
   [[nodiscard]] std::span<const std::string> notes() const { return notes_; }
 
  private:
+  void add_ghost(const SceneStar& star, SkyPosition direction);
   void find_sky();
   void read_variable_stars(const StarCatalogue& catalogue);
-  void add_ghost(const SceneStar& star, SkyPosition direction);
 
   Mission mission_;
   std::optional<SkyProjection> projection_;

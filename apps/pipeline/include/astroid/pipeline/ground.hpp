@@ -13,8 +13,8 @@ namespace astroid {
 /// The believed field of a scene; owns what GroundModel points to.
 struct Ground {
   std::vector<FieldStar> stars;
-  std::shared_ptr<const PixelPsf> psf;
   std::vector<double> backgrounds;  ///< e- per pixel at each target; empty where it is the same everywhere
+  std::shared_ptr<const PixelPsf> psf;
   GroundModel model;
 };
 
