@@ -20,7 +20,7 @@ constexpr std::size_t kSideBySide = 8;  // transforms whose numbers stay in a se
 
 /// Frequencies that a real row of n values needs.
 std::size_t half(int n) {
-  return static_cast<std::size_t>(n / 2 + 1);
+  return static_cast<std::size_t>(n) / 2 + 1;
 }
 
 }  // namespace
