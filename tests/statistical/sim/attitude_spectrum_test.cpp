@@ -56,7 +56,6 @@ TEST_P(SpectrumOfJitter, HasTheSlopeAndTheLevelGiven) {
   std::vector<double> frequencies;
   for (double f = 2e-3; f < 0.4; f *= 1.23) frequencies.push_back(f);
   std::vector<double> measured(frequencies.size(), 0.0);
-  double mean_square = 0.0;
   for (int r = 0; r < kRealisations; ++r) {
     const auto attitude = model(power_law(alpha, kLevel, kLow, kHigh), 128.0, 128.0, 100U + static_cast<unsigned>(r))
                               ->sample(kSamples / 128, 128);
@@ -65,7 +64,6 @@ TEST_P(SpectrumOfJitter, HasTheSlopeAndTheLevelGiven) {
       yaw.push_back(a.yaw);
       EXPECT_EQ(a.roll, 0.0);
     }
-    for (const double x : yaw) mean_square += x * x / static_cast<double>(kSamples) / kRealisations;
     for (std::size_t i = 0; i < frequencies.size(); ++i) measured[i] += density(yaw, frequencies[i]) / kRealisations;
   }
   // A straight line through the logarithms; each density has a relative error of 1/sqrt(100).

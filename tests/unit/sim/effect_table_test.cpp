@@ -34,7 +34,7 @@ TEST(EffectTable, OfTheCcdIsConsistent) {
   std::vector<EffectSpec> specs;
   for (const auto& effect : effect_table(DetectorType::kCcd)) specs.push_back(effect->spec());
   EXPECT_TRUE(is_consistent(specs));
-  EXPECT_EQ(specs.front().name, "jitter-model");
+  EXPECT_EQ(specs.front().name, "proper-motion");
   EXPECT_EQ(specs.back().name, "adc");
 }
 
