@@ -17,6 +17,7 @@ PsfTable make_gaussian_table(double sigma, double accuracy) {
   const int half = static_cast<int>(std::ceil(reach * samples_per_pixel));
   const double scale = 1.0 / (det::sqrt(2.0) * sigma * samples_per_pixel);
   std::vector<double> profile;
+  profile.reserve(static_cast<std::size_t>(half));
   for (int i = 0; i < half; ++i) profile.push_back(0.5 * (det::erfc(i * scale) - det::erfc((i + 1) * scale)));
   PsfTable table;
   table.samples = Image<double, unit::Relative>(2 * half, 2 * half);

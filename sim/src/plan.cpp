@@ -188,6 +188,9 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   if (moves && steady) plan_polynomial(scene, kShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
+  if (map != nullptr && plan.knobs.variables && scene.mission().psf.intra_pixel.flat > 0.0)
+    plan.approximations.emplace_back(
+        "stars that vary see the sensitivity that all pixels share, not what the cells of each have of their own");
   predict_times(plan, scene, costs);
   plan.memory_bytes = predicted_memory(plan, scene);
   return plan;

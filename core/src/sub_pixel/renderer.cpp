@@ -81,8 +81,12 @@ struct SubPixelRenderer::Design {
     make_transfer(settings.response);
   }
 
-  [[nodiscard]] std::size_t map_nodes(int period) const { return static_cast<std::size_t>(period * sub_pixels); }
-  [[nodiscard]] std::size_t cell_nodes(int period) const { return static_cast<std::size_t>(period * cells); }
+  [[nodiscard]] std::size_t map_nodes(int period) const {
+    return static_cast<std::size_t>(period) * static_cast<std::size_t>(sub_pixels);
+  }
+  [[nodiscard]] std::size_t cell_nodes(int period) const {
+    return static_cast<std::size_t>(period) * static_cast<std::size_t>(cells);
+  }
 
   // A sum over frequencies up to this one reaches half a step farther: to the band at least.
   [[nodiscard]] long last_frequency(int period) const { return static_cast<long>(std::ceil(band * period - 0.5)); }

@@ -29,12 +29,13 @@ struct Axis {
 };
 
 // The tile of least work along one axis among those whose period is at most `longest`.
-Axis choose_axis(int length, int margin, int longest) {
+Axis choose_axis(int length, const TileNeeds& needs, int longest) {
   Axis best;
   double least = std::numeric_limits<double>::infinity();
   for (int tiles = 1; tiles <= length; ++tiles) {
     const int tile = (length + tiles - 1) / tiles;
-    const auto period = static_cast<int>(FourierTransform::good_size(static_cast<std::size_t>(tile + 2 * margin)));
+    const auto period = static_cast<int>(
+        FourierTransform::good_size(static_cast<std::size_t>(tile) + 2 * static_cast<std::size_t>(needs.margin)));
     if (period <= longest) {
       const double work = static_cast<double>(tiles) * period;
       if (work < least) {
@@ -54,9 +55,9 @@ TileGrid make_tile_grid(const Rectangle& detector, const TileNeeds& needs) {
   constexpr double kLongest = 1e6;
   const auto longest = static_cast<int>(std::min(side, kLongest));
   // A narrow detector leaves memory for longer tiles.
-  const Axis narrow = choose_axis(std::min(detector.nx, detector.ny), needs.margin, longest);
+  const Axis narrow = choose_axis(std::min(detector.nx, detector.ny), needs, longest);
   const auto other = narrow.period > 0 ? static_cast<int>(std::min(side * side / narrow.period, kLongest)) : 0;
-  const Axis wide = choose_axis(std::max(detector.nx, detector.ny), needs.margin, other);
+  const Axis wide = choose_axis(std::max(detector.nx, detector.ny), needs, other);
   if (narrow.period == 0 || wide.period == 0) {
     const double period = kSmallestTile + 2.0 * needs.margin;
     throw InputError(

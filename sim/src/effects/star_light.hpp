@@ -5,6 +5,7 @@
 
 #include "astroid/sim/effect.hpp"
 #include "astroid/sim/plan.hpp"
+#include "astroid/sim/scene.hpp"
 
 namespace astroid {
 
@@ -36,6 +37,13 @@ void for_each_light(const RenderedStar& star, const ExposureState& state, Jitter
     light.broadened = true;
   }
   add(std::as_const(light));
+}
+
+/// The PSF that stars are made with: with the response within the pixel that all pixels share, unless that effect is
+/// off.
+inline const PixelPsf& recorded_psf(const EffectContext& context) {
+  const bool left_out = has_intra_pixel_response(context.scene.mission()) && !context.camera.intra_pixel;
+  return left_out ? context.scene.optical_psf() : context.scene.psf();
 }
 
 /// How far the attitude leads the images that are made, arcsec: those that a polynomial goes through lie up to a cell

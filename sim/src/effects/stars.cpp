@@ -39,9 +39,7 @@ void Stars::prepare(CameraState& camera, const PrepareContext& context) const {
 }
 
 void Stars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  // Sensitivity within the pixel is a part of what is recorded of a star.
-  const bool left_out = has_intra_pixel_response(context.scene.mission()) && !context.camera.intra_pixel;
-  const PixelPsf& psf = left_out ? context.scene.optical_psf() : context.scene.psf();
+  const PixelPsf& psf = recorded_psf(context);
   const std::span<const Strip> strips = context.camera.strips;
   const auto number = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin) - strips.begin();
   const auto& lists = context.camera.stars[static_cast<std::size_t>(number)];

@@ -92,7 +92,7 @@ void SubPixelStars::prepare(CameraState& camera, const PrepareContext& context) 
   PlanKnobs knobs;
   knobs.stamps = {{.min_electrons = 0.0, .half_width = renderer->reach(), .stars = 0}};
   auto lists = star_lists(context.scene, knobs, tiles, farthest_attitude(context),
-                          knobs.variables ? StarChoice::kConstant : StarChoice::kAll);
+                          context.knobs.variables ? StarChoice::kConstant : StarChoice::kAll);
   for (std::size_t i = 0; i < tiles.size(); ++i) camera.tiles.push_back({tiles[i], std::move(lists[i])});
 }
 

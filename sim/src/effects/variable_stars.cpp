@@ -40,7 +40,7 @@ void VariableStars::prepare(CameraState& camera, const PrepareContext& context) 
 void VariableStars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   if (!context.knobs.variables) return;  // they shine among the others, constantly
   const Scene& scene = context.scene;
-  const PixelPsf& psf = scene.psf();
+  const PixelPsf& psf = recorded_psf(context);
   const double half = 0.5 * scene.mission().simulation.exposure_time.value();
   const double middle = scene.mid_time(state.exposure).value();
   // The maps of a polynomial hold the constant stars; of these, the motion about the mean broadens the image.

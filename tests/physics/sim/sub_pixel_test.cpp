@@ -10,6 +10,7 @@
 #include "astroid/sim/simulator.hpp"
 #include "astroid/test/psf_table.hpp"
 #include "astroid/test/scenes.hpp"
+#include "astroid/test/temporary_folder.hpp"
 
 namespace astroid {
 namespace {
@@ -79,6 +80,18 @@ TEST(SubPixelStars, HaveTheBitsOfTheFullFrameInWindows) {
   for (int y = 0; y < 22; ++y)
     for (int x = 0; x < 31; ++x)
       EXPECT_EQ(window[static_cast<std::size_t>(y * 31 + x)], whole[static_cast<std::size_t>((y + 7) * 70 + x + 13)]);
+}
+
+TEST(SubPixelStars, LeaveTheVariableOnesToTheirEffect) {
+  const test::TemporaryFolder folder;
+  Mission analytic = mission_with(Renderer::kAnalytic);
+  analytic.field.variables =
+      folder.write("variables.csv", "id,kind,amplitude_ppm,period_d\nstar30,sinusoid,200000,0.001\n").string();
+  Mission map = analytic;
+  map.simulation.renderer = Renderer::kSubPixel;
+  const Scene scene(map, test::lab_catalogue(crowd()));
+  ASSERT_TRUE(make_plan(scene).runs("variable-stars"));
+  EXPECT_LT(largest_difference(expected(map), expected(analytic)), 1e-6 * kFaintest);
 }
 
 TEST(IntraPixelResponse, IsTheSameFoldedIntoThePsfAndCellByCell) {

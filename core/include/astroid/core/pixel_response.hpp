@@ -18,7 +18,8 @@ struct PixelResponse {
 
   [[nodiscard]] bool is_uniform() const;
   [[nodiscard]] double at(int column, int row) const {
-    return sensitivity[static_cast<std::size_t>(row * cells + column)];
+    return sensitivity[static_cast<std::size_t>(row) * static_cast<std::size_t>(cells) +
+                       static_cast<std::size_t>(column)];
   }
   /// Largest difference of a cell from the mean.
   [[nodiscard]] double depth() const;
