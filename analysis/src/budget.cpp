@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/photometric.hpp"
 
 namespace astroid {
@@ -19,7 +20,7 @@ double saturation_electrons(const CcdSettings& ccd) {
 }  // namespace
 
 PixelNoise expected_pixel_noise(const Mission& mission) {
-  const ElectronsPerSecond rate = mission.field.sky_background + mission.ccd.dark_current;
+  const ElectronsPerSecond rate = mean_background_rate(mission) + mission.ccd.dark_current;
   constexpr double kUniformVariance = 12.0;  // of a rounding error, 1/12
   return {(rate * mission.simulation.exposure_time).value(), mission.ccd.readout_noise.value(),
           mission.ccd.gain.value() / std::sqrt(kUniformVariance)};

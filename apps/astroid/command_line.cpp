@@ -91,6 +91,26 @@ int run_command_line(int argc, char** argv) {
       ->type_name("N,N");
   sub->callback([&] { command = [&] { return simulate(simulate_options); }; });
 
+  FocalPlaneCommand focal_plane_options;
+  focal_plane_options.run.run.command_line.assign(argv, argv + argc);
+  sub = app.add_subcommand(
+      "focal-plane", "maps of noise, contamination and recovery over the detector, from sub-fields spread over it");
+  add_configuration(sub, focal_plane_options.run.configuration);
+  add_run_folder(sub, focal_plane_options.run.run, "out/focal-plane");
+  sub->add_option("--across", focal_plane_options.across, "sub-fields along the columns")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  sub->add_option("--down", focal_plane_options.down, "sub-fields along the rows")
+      ->check(CLI::Range(1, 100))
+      ->capture_default_str();
+  sub->add_option("--side", focal_plane_options.side, "side of each")
+      ->type_name("PX")
+      ->check(CLI::Range(8, 100000))
+      ->capture_default_str();
+  sub->add_option("--magnitude", focal_plane_options.magnitude, "of the star that is mapped (default: targets' median)")
+      ->type_name("MAG");
+  sub->callback([&] { command = [&] { return focal_plane(focal_plane_options); }; });
+
   PhotometryOptions photometry_options;
   sub = app.add_subcommand("photometry", "fluxes of catalogue positions from any FITS images");
   sub->add_option("IMAGE", photometry_options.images, "FITS images")->required();

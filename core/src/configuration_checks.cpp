@@ -144,9 +144,15 @@ void check_together(const Mission& mission, Draft& draft) {
   checker.require(mission.telescope.simulated_cameras <= mission.telescope.cameras, "Telescope/SimulatedCameras",
                   "Telescope/Cameras", "more than there are",
                   fmt::format("at most Cameras ({})", mission.telescope.cameras));
-  checker.require(mission.satellite.jitter.model != JitterModel::kFile || !mission.satellite.jitter.file.empty(),
-                  "Satellite/Jitter/File", "Satellite/Jitter/model", "is missing",
-                  "the name of a readable file, since the model is file");
+  const JitterSettings& jitter = mission.satellite.jitter;
+  const bool from_file = jitter.model == JitterModel::kFile || jitter.model == JitterModel::kSpectrum;
+  checker.require(!from_file || !jitter.file.empty(), "Satellite/Jitter/File", "Satellite/Jitter/model", "is missing",
+                  fmt::format("the name of a readable file, since the model is {}",
+                              jitter.model == JitterModel::kFile ? "file" : "psd"));
+  const StrayLightSettings& stray = mission.field.stray_light;
+  checker.require(std::fabs(stray.gradient_x) + std::fabs(stray.gradient_y) <= 1.0, "StellarField/StrayLight/GradientY",
+                  "StellarField/StrayLight/GradientX", "makes the stray light negative in a corner",
+                  "at most 100 % together with the other gradient, without their signs");
   checker.require(mission.psf.model != PsfModel::kTable || !mission.psf.file.empty(), "PSF/File", "PSF/Model",
                   "is missing", "the name of a readable file, since the model is table");
 }

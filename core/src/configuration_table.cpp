@@ -18,9 +18,12 @@ constexpr std::array kSections = {
     Section{"Satellite", "Where the spacecraft looks and how well it holds still."},
     Section{"Satellite/Pointing", "Direction of the optical axis, ICRS."},
     Section{"Satellite/Jitter", "Attitude noise, shared by all cameras."},
+    Section{"Satellite/Drift", "Slow motion of the line of sight."},
+    Section{"Satellite/Repointing", "Errors of pointing the spacecraft anew each quarter."},
     Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
     Section{"PSF", "The image of a star."},
     Section{"StellarField", "The stars and the sky behind them."},
+    Section{"StellarField/StrayLight", "Light in every pixel that comes from outside the field."},
     Section{"CCD", "The detector and its electronics."},
     Section{"CCD/OpticalAxis",
             "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
@@ -39,9 +42,9 @@ constexpr std::array kSections = {
 
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
-  for (auto part :
-       {simulation_parameters, satellite_parameters, telescope_parameters, psf_parameters, stellar_field_parameters,
-        ccd_parameters, readout_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+  for (auto part : {simulation_parameters, satellite_parameters, motion_parameters, telescope_parameters,
+                    psf_parameters, stellar_field_parameters, sky_parameters, ccd_parameters, readout_parameters,
+                    photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

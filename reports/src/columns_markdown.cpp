@@ -29,6 +29,9 @@ std::vector<TableDoc> table_docs() {
       {"magnitude_recovery.csv", "one bin of magnitude", column_docs(recovery_columns())},
       {"contamination.csv", "one target and its strongest neighbours", column_docs(contamination_columns())},
       {"noise_budget.csv", "one magnitude, predicted without a simulation", column_docs(budget_columns())},
+      {"focal_plane.csv", "one sub-field (`astroid focal-plane`)", column_docs(focal_plane_columns())},
+      {"focal_plane_map.csv", "one place on the detector (`astroid focal-plane`)",
+       column_docs(focal_plane_map_columns())},
   };
 }
 

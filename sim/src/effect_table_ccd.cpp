@@ -1,12 +1,14 @@
 #include <array>
 
 #include "astroid/sim/effect_table.hpp"
+#include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
 #include "effects/bad_pixels.hpp"
 #include "effects/bias.hpp"
 #include "effects/bias_drift.hpp"
 #include "effects/cross_talk.hpp"
 #include "effects/dark_current.hpp"
+#include "effects/drift.hpp"
 #include "effects/full_well.hpp"
 #include "effects/gain.hpp"
 #include "effects/jitter_file.hpp"
@@ -14,10 +16,15 @@
 #include "effects/nonlinearity.hpp"
 #include "effects/photon_noise.hpp"
 #include "effects/prnu.hpp"
+#include "effects/proper_motion_effect.hpp"
 #include "effects/readout_noise.hpp"
+#include "effects/repointing.hpp"
 #include "effects/sky.hpp"
 #include "effects/smearing.hpp"
 #include "effects/stars.hpp"
+#include "effects/stray_light.hpp"
+#include "effects/variable_stars.hpp"
+#include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
 
@@ -37,12 +44,14 @@ struct Table {
 };
 
 using CcdTable =
-    Table<JitterModelEffect, JitterFileEffect,                                                   // Pointing
-          Stars,                                                                                 // Optics
-          Sky,                                                                                   // Sky
+    Table<ProperMotionEffect,                                                                    // Catalogue
+          JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
+          Stars, VariableStars,                                                                  // Optics
+          Sky, ZodiacalSky, StrayLight,                                                          // Sky
           Prnu, DeadPixels, DarkCurrent, HotPixels, OpenShutterSmearing, FrameTransferSmearing,  // PixelMean
           PhotonNoise, FullWell,                                                                 // PixelSample
-          ReadoutNoise, GainEffect, CrossTalk, NonLinearity, BiasEffect, BiasDrift, RowOffset, BadPixelMap, Adc>;      // Readout
+          ReadoutNoise, GainEffect, CrossTalk, NonLinearity, BiasEffect, BiasDrift, RowOffset, BadPixelMap,
+          Adc>;  // Readout
 
 }  // namespace
 

@@ -13,6 +13,7 @@
 #include "astroid/core/math.hpp"
 #include "astroid/sim/effect_table.hpp"
 #include "plan_cost.hpp"
+#include "plan_motion.hpp"
 
 namespace astroid {
 
@@ -51,67 +52,6 @@ std::vector<StampTier> plan_stamps(const Scene& scene, double share, double& err
   }
   error = share * s.tightest_tolerance();
   return stamps;
-}
-
-/// Chooses how motion enters the image so that what is neglected stays below its share of the brightest target's
-/// tolerance.
-void plan_jitter(const Scene& scene, double share, bool moves, Plan& plan) {
-  const SceneSummary& s = scene.summary();
-  if (!moves) return;
-  const double flux = s.brightest_target_electrons;
-  if (!(flux > 0.0)) return;
-  // The mean position of an exposure is a random quantity: an error of it that is small against the exposure's own
-  // noise with all cameras, which it does not share, changes no statistics.
-  const double noise = det::sqrt(kVarianceTolerance * s.relative_variance_in_bin(flux) * s.exposures_per_bin);
-  const double first_order = s.psf.gradient * s.attitude_rms_px;
-  plan.knobs.attitude_steps = scene.attitude().steps_for(first_order > 0.0 ? noise / first_order : 1.0);
-
-  const double allowed = share * s.flux_tolerance(flux) / flux;  // relative
-  // Both axes: half the curvature times the variance of the motion, and what the next order leaves of it.
-  const double second_order = s.psf.curvature * s.attitude_rms_in_exposure_px * s.attitude_rms_in_exposure_px;
-  const double fourth_order = second_order * second_order;
-  if (second_order <= allowed) {
-    plan.knobs.jitter = JitterTreatment::kShift;
-    plan.jitter_error = flux * second_order;
-  } else if (fourth_order <= allowed) {
-    plan.knobs.jitter = JitterTreatment::kBroadened;
-    plan.jitter_error = flux * fourth_order;
-  } else {
-    plan.knobs.jitter = JitterTreatment::kSubSteps;
-    plan.jitter_error = flux * second_order / plan.knobs.attitude_steps;
-  }
-}
-
-/// Replaces the rendering of every star by a polynomial in the attitude where that is cheaper. Like every decision,
-/// this one looks at the whole detector, so windows and the full frame share it.
-void plan_polynomial(const Scene& scene, double share, Plan& plan) {
-  constexpr double kReach = 4.5;  // rms of the motion in one cell: others are seldom needed
-  constexpr std::size_t kMostTerms = 24;
-  constexpr double kMostBytes = 512.0 * 1024.0 * 1024.0;  // of a detector's maps
-  const SceneSummary& s = scene.summary();
-  const double flux = s.brightest_target_electrons;
-  if (plan.knobs.jitter == JitterTreatment::kNone || !(flux > 0.0)) return;
-  const AttitudeVariance variance = scene.attitude().variance();
-  AttitudePolynomial polynomial;
-  polynomial.scale = {kReach * det::sqrt(variance.yaw), kReach * det::sqrt(variance.pitch),
-                      kReach * det::sqrt(variance.roll)};
-  AttitudeReach reach;
-  for (const SceneStar& star : scene.stars()) {
-    const AttitudeJacobian& j = star.motion;
-    reach.yaw = std::max(reach.yaw, polynomial.scale.yaw * det::hypot(j.dx_dyaw, j.dy_dyaw));
-    reach.pitch = std::max(reach.pitch, polynomial.scale.pitch * det::hypot(j.dx_dpitch, j.dy_dpitch));
-    reach.roll = std::max(reach.roll, polynomial.scale.roll * det::hypot(j.dx_droll, j.dy_droll));
-  }
-  double left_out = 0.0;
-  const double allowed = share * s.flux_tolerance(flux) / flux;
-  polynomial.terms = choose_attitude_terms(s.psf.derivatives, reach, allowed, kMostTerms, left_out);
-  const auto pixels = static_cast<double>(scene.detector().size());
-  if (polynomial.terms.empty() || maps_bytes(polynomial.terms.size(), pixels) > kMostBytes ||
-      maps_seconds(polynomial.terms.size(), pixels) > full_frame_seconds(plan, scene))
-    return;
-  plan.knobs.jitter = JitterTreatment::kPolynomial;
-  plan.knobs.polynomial = std::move(polynomial);
-  plan.jitter_error = flux * left_out;
 }
 
 std::string describe_pixels(const Scene& scene, const Plan& plan, std::vector<std::string>& approximations) {
@@ -221,7 +161,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   bool moves = false;
   for (const auto& effect : effect_table(scene.mission().simulation.type)) {
     PlannedEffect planned{.effect = effect.get(), .need = effect->is_needed(summary)};
-    moves = moves || (planned.need.needed && effect->spec().level == EffectLevel::kPointing);
+    moves = moves || (planned.need.needed && (effect->spec().writes & plane_bit::kAttitude) != 0);
     plan.effects.push_back(std::move(planned));
   }
   plan.reads = scene.mission().simulation.type == DetectorType::kCmos ? scene.mission().cmos.reads : 1;
@@ -233,9 +173,10 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   plan.tolerance = summary.tightest_tolerance();
   plan.renderer = scene.mission().psf.model == PsfModel::kGaussian ? "analytic" : "prf";
   plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
+  plan.knobs.variables = plan.runs("variable-stars");
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
-  plan_jitter(scene, kShares.jitter, moves, plan);
-  if (steady) plan_polynomial(scene, kShares.jitter, plan);
+  if (moves) plan_jitter(scene, kShares.jitter, plan);
+  if (moves && steady) plan_polynomial(scene, kShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan, plan.approximations);
   note_coarse_converter(scene, plan.approximations);
   predict_times(plan, scene, costs);

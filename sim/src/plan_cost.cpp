@@ -17,9 +17,10 @@ struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
-constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},      {"dark-current", 0.4},
-                                     {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
-                                     {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
+constexpr PixelCost kPixelCosts[] = {
+    {"sky", 0.1},          {"zodiacal-sky", 0.6},  {"stray-light", 0.6}, {"prnu", 0.4},
+    {"dark-current", 0.4}, {"photon-noise", 2.55}, {"full-well", 0.3},   {"readout-noise", 1.45},
+    {"gain", 0.15},        {"bias", 0.1},          {"adc", 0.5}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
 constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
 /// Ns a pixel of one map, where the maps fit into a share of the last cache and where they come from memory.

@@ -55,7 +55,11 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
   const JitterTreatment treatment = plan.knobs.jitter;
   if (treatment == JitterTreatment::kNone) return series;
   series->steps = plan.knobs.attitude_steps;
-  scene.attitude().for_each_exposure(
+  // What the plan leaves out is left out here too.
+  const AttitudeParts parts{.jitter = plan.runs("jitter-model") || plan.runs("jitter-file"),
+                            .drift = plan.runs("drift"),
+                            .repointing = plan.runs("re-pointing")};
+  scene.attitude(parts)->for_each_exposure(
       scene.mission().simulation.exposures, series->steps, [&](std::span<const Attitude> exposure) {
         series->moments.push_back(attitude_moments(exposure));
         for (const Attitude& a : exposure)
@@ -98,7 +102,7 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
     still_->get(0, [this] { return render({}, conditions_of(*plan_, *scene_, 0)); });
   }
   if (plan_->knobs.jitter == JitterTreatment::kPolynomial)
-    moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial);
+    moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial, plan_->layout->size());
   stages_ = make_stages(source(), false);
 }
 

@@ -32,9 +32,14 @@ StarLight smeared_star(const Scene& scene, const SceneStar& star, double share) 
           .half_width = scene.psf().stamp_half_width(std::clamp(allowed, kSmallestLoss, kLargestLoss))};
 }
 
-double smeared_sky(const Scene& scene) {
+/// Sky and stray light of one pixel, e- per exposure.
+double sky_of_pixel(const Scene& scene) {
   const Mission& mission = scene.mission();
-  return share_of(scene) * mission.ccd.rows * (mission.field.sky_background * mission.simulation.exposure_time).value();
+  return scene.summary().sky + (mission.field.stray_light.level * mission.simulation.exposure_time).value();
+}
+
+double smeared_sky(const Scene& scene) {
+  return share_of(scene) * scene.mission().ccd.rows * sky_of_pixel(scene);
 }
 
 }  // namespace
@@ -149,8 +154,7 @@ double brightest_column_bound(const Scene& scene) {
     }
     highest = std::max(highest, sum);
   }
-  const Mission& mission = scene.mission();
-  return highest + mission.ccd.rows * (mission.field.sky_background * mission.simulation.exposure_time).value();
+  return highest + scene.mission().ccd.rows * sky_of_pixel(scene);
 }
 
 }  // namespace astroid

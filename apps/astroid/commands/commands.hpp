@@ -32,6 +32,13 @@ struct AssessOptions {
 int assess(const AssessOptions& options);
 int simulate(const AssessOptions& options);
 
+struct FocalPlaneCommand {
+  AssessOptions run;
+  int across = 3, down = 3, side = 200;
+  std::optional<double> magnitude;
+};
+int focal_plane(const FocalPlaneCommand& options);
+
 struct PlanOptions {
   ConfigurationOptions configuration;
   bool json = false;

@@ -27,22 +27,6 @@ constexpr std::size_t kListedNeighbours = 3;
 constexpr double kNeighbourReach = 12.0;  ///< px; farther neighbours put no light worth a line into an aperture
 constexpr std::size_t kShownLightCurves = 6;
 
-/// Rows of targets.csv.
-std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup& setup) {
-  const Scene& scene = *run.prepared.scene;
-  const std::vector<TruthStar> truth = truth_of(scene);
-  const std::vector<StarMotion> motions = target_motions(scene);
-  std::vector<TargetMetrics> targets;
-  targets.reserve(run.estimators.size());
-  for (std::size_t t = 0; t < run.estimators.size(); ++t) {
-    const StarEstimator& estimator = run.estimators[t];
-    TargetMetrics target = predict_target(truth[estimator.star], estimator, motions[t], setup);
-    add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
-    targets.push_back(std::move(target));
-  }
-  return targets;
-}
-
 /// photometry/sources.csv: the mean flux of every target over the run.
 void write_mean_sources(const std::filesystem::path& path, const MeasuredRun& run,
                         std::span<const TargetMetrics> targets) {
@@ -143,6 +127,21 @@ std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const Tar
 }
 
 }  // namespace
+
+std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup& setup) {
+  const Scene& scene = *run.prepared.scene;
+  const std::vector<TruthStar> truth = truth_of(scene);
+  const std::vector<StarMotion> motions = target_motions(scene);
+  std::vector<TargetMetrics> targets;
+  targets.reserve(run.estimators.size());
+  for (std::size_t t = 0; t < run.estimators.size(); ++t) {
+    const StarEstimator& estimator = run.estimators[t];
+    TargetMetrics target = predict_target(truth[estimator.star], estimator, motions[t], setup);
+    add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
+    targets.push_back(std::move(target));
+  }
+  return targets;
+}
 
 ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run) {
   const Scene& scene = *run.prepared.scene;

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "astroid/analysis/target_metrics.hpp"
 #include "astroid/core/configuration.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "astroid/pipeline/ground.hpp"
@@ -28,6 +29,9 @@ struct ReportedRun {
   std::vector<std::string> verdict;
   std::vector<std::string> warnings;
 };
+
+/// Rows of targets.csv.
+std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup& setup);
 
 /// Analyses a run and writes analysis/, report/ and photometry/sources.csv into `folder`. @throws EnvironmentError
 ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run);

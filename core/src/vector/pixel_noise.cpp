@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <span>
 
 #include "astroid/core/digitise.hpp"
 #include "vector/draws-inl.hpp"
@@ -29,7 +30,7 @@ void words_kernel(const RandomStream& stream, const PixelPlaces& pixels, std::ui
   while (blocks.next()) std::copy_n(blocks.words(), blocks.size(), out + blocks.first());
 }
 
-HWY_INLINE Double uniforms(hn::Vec<hn::Half<Unsigned>> word) {
+HWY_INLINE hn::Vec<Doubles> uniforms(hn::Vec<hn::Half<Unsigned>> word) {
   const Doubles d;
   const hn::Half<Integers> di;
   const hn::Half<Unsigned> du;
@@ -43,83 +44,97 @@ void uniforms_kernel(const RandomStream& stream, const PixelPlaces& pixels, doub
   const hn::Half<Unsigned> du;
   WordBlocks blocks(stream, pixels);
   while (blocks.next()) {
-    alignas(64) std::array<double, WordBlocks::kBlock + WordBlocks::kWidestVector> values;
+    alignas(64) std::array<double, WordBlocks::kBlock + WordBlocks::kSlack> values;
     for (std::size_t k = 0; k < blocks.size(); k += kDoubles)
       hn::StoreU(uniforms(hn::LoadU(du, blocks.words() + k)), d, values.data() + k);
     std::copy_n(values.begin(), blocks.size(), out + blocks.first());
   }
 }
 
+// How many vectors are worked on abreast: more chains would not fit into the registers.
+constexpr int kNormalsAbreast = 4;
+constexpr int kPoissonAbreast = 2;
+
+/// Normals of a block of words, with what poisson_of_large_means() wants to know of them. A pass of its own: the chains
+/// of dependent operations are long, and the processor overlaps more of shorter loops.
+struct NormalBlock {
+  HWY_INLINE NormalBlock(const std::uint32_t* words, std::size_t size) {
+    for (std::size_t k = 0; k < size; k += kNormalsAbreast * kSingles) {
+      const auto normals = normals_of_words(load_words<kNormalsAbreast>(words + k));
+      store(normals.z, z.data() + k);
+      store(normals.tail, tail.data() + k);
+    }
+  }
+  template <int N>
+  HWY_INLINE Normals<N> at(std::size_t k) const {
+    return {load_floats<N>(z.data() + k), load_floats<N>(tail.data() + k)};
+  }
+  alignas(64) std::array<float, WordBlocks::kBlock + WordBlocks::kSlack> z;
+  alignas(64) std::array<float, WordBlocks::kBlock + WordBlocks::kSlack> tail;
+};
+
 void normals_kernel(const RandomStream& stream, const PixelPlaces& pixels, float* out) {
-  const Singles d;
-  const Unsigned du;
   WordBlocks blocks(stream, pixels);
   while (blocks.next()) {
-    alignas(64) std::array<float, WordBlocks::kBlock + WordBlocks::kWidestVector> values;
-    for (std::size_t k = 0; k < blocks.size(); k += kSingles)
-      hn::StoreU(normals_of_words(hn::LoadU(du, blocks.words() + k)).z, d, values.data() + k);
+    alignas(64) std::array<float, WordBlocks::kBlock + WordBlocks::kSlack> values;
+    for (std::size_t k = 0; k < blocks.size(); k += kNormalsAbreast * kSingles)
+      store(normals_of_words(load_words<kNormalsAbreast>(blocks.words() + k)).z, values.data() + k);
     std::copy_n(values.begin(), blocks.size(), out + blocks.first());
   }
 }
 
+template <int N>
 HWY_INLINE void add_normals(const std::uint32_t* words, double rms, double* values) {
-  const Doubles d;
-  const Unsigned du;
-  const auto [lower, upper] = promote(normals_of_words(hn::LoadU(du, words)).z);
-  const Double scale = hn::Set(d, rms);
-  hn::StoreU(hn::Add(hn::LoadU(d, values), hn::Mul(scale, lower)), d, values);
-  hn::StoreU(hn::Add(hn::LoadU(d, values + kDoubles), hn::Mul(scale, upper)), d, values + kDoubles);
+  const auto scale = hn::Set(Doubles(), rms);
+  const Pairs<N> scaled = each(
+      [=](Pair z) {
+        return Pair{hn::Mul(scale, z.lower), hn::Mul(scale, z.upper)};
+      },
+      to_doubles(normals_of_words(load_words<N>(words)).z));
+  store(load_doubles<N>(values) + scaled, values);
 }
 
 void add_normals_kernel(const RandomStream& stream, const PixelPlaces& pixels, double rms, double* values) {
   WordBlocks blocks(stream, pixels);
   while (blocks.next()) {
     double* const block = values + blocks.first();
+    constexpr std::size_t kGroup = kNormalsAbreast * kSingles;
     std::size_t k = 0;
-    for (; k + kSingles <= blocks.size(); k += kSingles) add_normals(blocks.words() + k, rms, block + k);
+    for (; k + kGroup <= blocks.size(); k += kGroup) add_normals<kNormalsAbreast>(blocks.words() + k, rms, block + k);
+    for (; k + kSingles <= blocks.size(); k += kSingles) add_normals<1>(blocks.words() + k, rms, block + k);
     if (k == blocks.size()) continue;
     std::array<double, kSingles> rest{};
     std::copy(block + k, block + blocks.size(), rest.begin());
-    add_normals(blocks.words() + k, rms, rest.data());
+    add_normals<1>(blocks.words() + k, rms, rest.data());
     std::copy_n(rest.begin(), blocks.size() - k, block + k);
   }
 }
 
-/// Normals of a block of words, with what poisson_of_large_means() wants to know of them. A pass of its own: the chains
-/// of dependent operations are long, and the processor overlaps more of shorter loops.
-struct NormalBlock {
-  HWY_INLINE NormalBlock(const std::uint32_t* words, std::size_t size) {
-    const Singles d;
-    for (std::size_t k = 0; k < size; k += kSingles) {
-      const Normals normals = normals_of_words(hn::LoadU(Unsigned(), words + k));
-      hn::Store(normals.z, d, z.data() + k);
-      hn::Store(normals.tail, d, tail.data() + k);
-    }
-  }
-  alignas(64) std::array<float, WordBlocks::kBlock + WordBlocks::kWidestVector> z;
-  alignas(64) std::array<float, WordBlocks::kBlock + WordBlocks::kWidestVector> tail;
-};
-
-/// What poisson() looks at for one vector of pixels.
+/// What poisson() looks at for some vectors of pixels.
+template <int N>
 struct Means {
-  Single mean;
-  Single fraction;
-  Double whole_lower;
-  Double whole_upper;
+  Floats<N> mean;
+  Floats<N> fraction;
+  Pairs<N> whole;
 };
 
 /// Counts of means that may be small: by adding probabilities.
 struct SmallMeans {
   const std::uint32_t* words;
-  HWY_INLINE Counts operator()(const Means& means, std::size_t k) const {
-    const Singles d;
-    const Integers di;
-    const Single ten = hn::Set(d, fits::kSmallMean);
-    Counts counts = poisson_of_small_means(hn::Min(means.mean, ten), hn::LoadU(Unsigned(), words + k));
-    counts.steps = hn::Sub(counts.steps, demote(means.whole_lower, means.whole_upper));
+  template <int N>
+  HWY_INLINE Counts<N> operator()(const Means<N>& means, std::size_t k) const {
+    Counts<N> counts =
+        poisson_of_small_means(smaller(means.mean, all_of<Floats<N>>(fits::kSmallMean)), load_words<N>(words + k));
+    counts.steps = counts.steps - to_singles(means.whole);
     // No mean: the sign is set, or it is not a number.
-    const auto positive = hn::RebindMask(d, hn::Gt(hn::BitCast(di, means.mean), hn::Set(di, -1)));
-    counts.decided = hn::And(hn::And(counts.decided, positive), hn::Eq(means.mean, means.mean));
+    const Masks<N> valid = each(
+        [](auto mean) {
+          const Integers di;
+          const auto positive = hn::RebindMask(Singles(), hn::Gt(hn::BitCast(di, mean), hn::Set(di, -1)));
+          return hn::And(positive, hn::Eq(mean, mean));
+        },
+        means.mean);
+    counts.decided = counts.decided & valid;
     return counts;
   }
 };
@@ -128,54 +143,61 @@ struct SmallMeans {
 struct AnyMeans {
   const NormalBlock& normals;
   SmallMeans small;
-  HWY_INLINE Counts operator()(const Means& means, std::size_t k) const {
-    const Singles d;
-    Counts counts = poisson_of_large_means(means.mean, means.fraction, hn::Load(d, normals.z.data() + k),
-                                           hn::Load(d, normals.tail.data() + k));
-    const auto large = hn::Ge(means.mean, hn::Set(d, fits::kSmallMean));
-    if (HWY_LIKELY(hn::AllTrue(d, large))) return counts;
-    const Counts of_small = small(means, k);
-    counts.steps = hn::IfThenElse(large, counts.steps, of_small.steps);
-    counts.decided = hn::Or(hn::And(large, counts.decided), hn::AndNot(large, of_small.decided));
+  template <int N>
+  HWY_INLINE Counts<N> operator()(const Means<N>& means, std::size_t k) const {
+    Counts<N> counts = poisson_of_large_means(means.mean, means.fraction, normals.at<N>(k));
+    const Masks<N> large = means.mean >= fits::kSmallMean;
+    if (HWY_LIKELY(everywhere(large))) return counts;
+    const Counts<N> of_small = small(means, k);
+    counts.steps = choose(large, counts.steps, of_small.steps);
+    counts.decided = (large & counts.decided) | ((!large) & of_small.decided);
     return counts;
   }
 };
 
-/// Counts of one vector of pixels, negative where they are undecided. @returns whether all are decided
-template <class Method>
+/// Counts of N vectors of pixels, negative where they are undecided. @returns whether all are decided
+template <int N, class Method>
 HWY_INLINE bool poisson(const Method& method, std::size_t k, const double* mean, double* counts) {
-  const Doubles d;
-  const Singles ds;
-  const Double lower = hn::LoadU(d, mean);
-  const Double upper = hn::LoadU(d, mean + kDoubles);
-  const Double whole_lower = hn::Floor(lower);
-  const Double whole_upper = hn::Floor(upper);
-  const Counts result = method({.mean = demote(lower, upper),
-                                .fraction = demote(hn::Sub(lower, whole_lower), hn::Sub(upper, whole_upper)),
-                                .whole_lower = whole_lower,
-                                .whole_upper = whole_upper},
-                               k);
+  const Pairs<N> means = load_doubles<N>(mean);
+  const Pairs<N> whole = whole_part(means);
+  const Counts<N> result =
+      method(Means<N>{.mean = to_singles(means), .fraction = to_singles(means - whole), .whole = whole}, k);
   constexpr float kNone = -std::numeric_limits<float>::infinity();
-  const TwoDoubles steps = promote(hn::IfThenElse(result.decided, result.steps, hn::Set(ds, kNone)));
-  hn::StoreU(hn::Add(whole_lower, steps.lower), d, counts);
-  hn::StoreU(hn::Add(whole_upper, steps.upper), d, counts + kDoubles);
-  return hn::AllTrue(ds, result.decided);
+  store(whole + to_doubles(choose(result.decided, result.steps, all_of<Floats<N>>(kNone))), counts);
+  return everywhere(result.decided);
 }
 
-/// A whole block. @returns whether all are decided
+/// The groups of a block with undecided counts.
+struct OpenGroups {
+  struct Group {
+    std::size_t begin;
+    std::size_t size;
+  };
+  HWY_INLINE void add_unless(bool decided, Group group) {
+    groups[count] = group;
+    count += decided ? 0U : 1U;
+  }
+  std::size_t count = 0;
+  std::array<Group, WordBlocks::kBlock / kSingles + 1> groups;
+};
+
+/// A whole block.
 template <class Method>
-HWY_INLINE bool poisson_block(const Method& method, std::size_t size, const double* mean, double* counts) {
-  bool decided = true;
+HWY_INLINE void poisson_block(const Method& method, std::size_t size, const double* mean, double* counts,
+                              OpenGroups& open) {
+  constexpr std::size_t kGroup = kPoissonAbreast * kSingles;
   std::size_t k = 0;
-  for (; k + kSingles <= size; k += kSingles) decided &= poisson(method, k, mean + k, counts + k);
-  if (k == size) return decided;
+  for (; k + kGroup <= size; k += kGroup)
+    open.add_unless(poisson<kPoissonAbreast>(method, k, mean + k, counts + k), {k, kGroup});
+  for (; k + kSingles <= size; k += kSingles)
+    open.add_unless(poisson<1>(method, k, mean + k, counts + k), {k, kSingles});
+  if (k == size) return;
   std::array<double, kSingles> rest_mean;
   std::array<double, kSingles> rest;
   rest_mean.fill(mean[k]);
   std::copy(mean + k, mean + size, rest_mean.begin());
-  decided &= poisson(method, k, rest_mean.data(), rest.data());
+  open.add_unless(poisson<1>(method, k, rest_mean.data(), rest.data()), {k, size - k});
   std::copy_n(rest.begin(), size - k, counts + k);
-  return decided;
 }
 
 void poisson_kernel(const RandomStream& stream, const PixelPlaces& pixels, const double* mean, double* counts) {
@@ -187,35 +209,33 @@ void poisson_kernel(const RandomStream& stream, const PixelPlaces& pixels, const
     bool any_large = false;
     for (std::size_t i = 0; i < blocks.size() && !any_large; ++i)
       any_large = block_mean[i] >= static_cast<double>(fits::kSmallMean);
-    const bool decided = any_large ? poisson_block(AnyMeans{NormalBlock(blocks.words(), blocks.size()), small},
-                                                   blocks.size(), block_mean, block)
-                                   : poisson_block(small, blocks.size(), block_mean, block);
-    if (HWY_LIKELY(decided)) continue;
-    for (std::size_t i = 0; i < blocks.size(); ++i)
-      if (!(block[i] >= 0.0))
-        block[i] = poisson_at_pixel(stream, pixel_at(pixels, blocks.first() + i), block_mean[i], blocks.words()[i]);
+    OpenGroups open;
+    if (any_large) {
+      poisson_block(AnyMeans{NormalBlock(blocks.words(), blocks.size()), small}, blocks.size(), block_mean, block,
+                    open);
+    } else {
+      poisson_block(small, blocks.size(), block_mean, block, open);
+    }
+    for (const OpenGroups::Group& group : std::span(open.groups).first(open.count))
+      for (std::size_t i = group.begin; i < group.begin + group.size; ++i)
+        if (!(block[i] >= 0.0))
+          block[i] = poisson_at_pixel(stream, pixel_at(pixels, blocks.first() + i), block_mean[i], blocks.words()[i]);
   }
 }
 
-/// Flags the pixels outside of a mask. @returns how many they are
-HWY_INLINE std::size_t flag_clipped(hn::Mask<Doubles> inside, std::uint8_t* flags) {
-  const Doubles d;
-  std::array<std::uint8_t, 8> bits{};
-  hn::StoreMaskBits(d, inside, bits.data());
-  std::size_t clipped = 0;
-  for (std::uint32_t outside = ~std::uint32_t{bits[0]} & ((1U << kDoubles) - 1U); outside != 0;
-       outside &= outside - 1U) {
-    flags[hwy::Num0BitsBelowLS1Bit_Nonzero32(outside)] |= pixel_flag::kAdcSaturated;
-    ++clipped;
-  }
-  return clipped;
+/// Flags the pixels of a mask. @returns how many they are
+HWY_INLINE std::size_t flag_clipped(hn::Mask<Singles> clipped, std::uint8_t* flags) {
+  const hn::Rebind<std::uint8_t, Singles> d;
+  const Integers di;
+  const auto flag = hn::IfThenElseZero(hn::RebindMask(di, clipped), hn::Set(di, pixel_flag::kAdcSaturated));
+  hn::StoreU(hn::Or(hn::LoadU(d, flags), hn::DemoteTo(d, flag)), d, flags);
+  return hn::CountTrue(Singles(), clipped);
 }
 
 std::size_t digitise_kernel(const double* counts, std::size_t size, double top, float* digital, std::uint8_t* flags) {
-  const Doubles d;
-  const Singles ds;
-  const Double limit = hn::Set(d, top);
-  const Double zero = hn::Zero(d);
+  const Singles d;
+  const auto zero = hn::Zero(d);
+  const auto limit = hn::Set(d, static_cast<float>(top));  // exact
   std::size_t clipped = 0;
   std::size_t i = 0;
   const auto one_by_one = [&](std::size_t end) {
@@ -227,15 +247,14 @@ std::size_t digitise_kernel(const double* counts, std::size_t size, double top, 
     }
   };
   while (i + kSingles <= size) {
-    const Double lower = hn::Add(hn::Round(hn::LoadU(d, counts + i)), zero);
-    const Double upper = hn::Add(hn::Round(hn::LoadU(d, counts + i + kDoubles)), zero);
-    const auto lower_inside = hn::And(hn::Lt(lower, limit), hn::Ge(lower, zero));
-    const auto upper_inside = hn::And(hn::Lt(upper, limit), hn::Ge(upper, zero));
-    if (HWY_LIKELY(hn::AllTrue(d, hn::And(lower_inside, upper_inside)))) {
-      hn::StoreU(demote(lower, upper), ds, digital + i);
-    } else if (hn::AllTrue(d, hn::And(hn::Eq(lower, lower), hn::Eq(upper, upper)))) {
-      hn::StoreU(demote(hn::Min(hn::Max(lower, zero), limit), hn::Min(hn::Max(upper, zero), limit)), ds, digital + i);
-      clipped += flag_clipped(lower_inside, flags + i) + flag_clipped(upper_inside, flags + i + kDoubles);
+    // Whole numbers up to the top stay what they are in single precision, and larger ones stay larger.
+    const auto rounded = hn::Add(to_singles(nearest(load_doubles<1>(counts + i))).first, zero);
+    const auto inside = hn::And(hn::Ge(rounded, zero), hn::Lt(rounded, limit));
+    if (HWY_LIKELY(hn::AllTrue(d, inside))) {
+      hn::StoreU(rounded, d, digital + i);
+    } else if (hn::AllTrue(d, hn::Eq(rounded, rounded))) {
+      hn::StoreU(hn::Min(hn::Max(rounded, zero), limit), d, digital + i);
+      clipped += flag_clipped(hn::Not(inside), flags + i);
     } else {  // something is not a number
       one_by_one(i + kSingles);
       continue;

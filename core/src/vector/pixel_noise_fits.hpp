@@ -49,7 +49,7 @@ inline constexpr float kLowestS = -0.75F;
 inline constexpr float kHighestS = 1.0F;
 inline constexpr std::array<float, 6> kA = {0.166668341F,    -0.0138840042F,  0.0036633946F,
                                             -0.00135874015F, 0.000708163716F, -0.000263769412F};
-inline constexpr std::array<float, 5> kC0 = {0.333325893F, -0.0276242848F, 0.0087389769F, -0.00436831266F,
+inline constexpr std::array<float, 5> kC0 = {0.333325893F - 0.5F, -0.0276242848F, 0.0087389769F, -0.00436831266F,
                                              0.00173285615F};
 inline constexpr std::array<float, 3> kC1 = {-0.0195435621F, 0.023259433F, -0.0155453496F};
 
@@ -60,6 +60,7 @@ inline constexpr float kErrorFloor = 2e-4F;
 inline constexpr float kErrorPerMean = 8e-3F;
 inline constexpr float kErrorOfCentre = 2e-7F;
 inline constexpr float kErrorOfNormal = 1.6e-6F;
+inline constexpr float kRoom = 0.5F - kErrorFloor;
 inline constexpr float kSmallMean = 10.0F;  // below it the count is found by adding probabilities from 0 on
 
 // Sums of probabilities of at most kMostSteps terms, each with a relative error of some 1e-7 a step.

@@ -99,8 +99,8 @@ ContinuousCount continuous_count(double mean, std::uint32_t word) {
   const float second = w * w * polynomial(s, fits::kA);
   const float third = polynomial(s, fits::kC0) + inverse * polynomial(s, fits::kC1);
   return {.offset = fraction + (first + (second + third)),
-          .bound = (fits::kErrorFloor + inverse * fits::kErrorPerMean) +
-                   root * (fits::kErrorOfCentre + std::fabs(w) * fits::kErrorOfNormal),
+          .room = fits::kRoom - inverse * fits::kErrorPerMean -
+                  root * (std::fabs(w) * fits::kErrorOfNormal + fits::kErrorOfCentre),
           .in_range = s > fits::kLowestS && s < fits::kHighestS,
           .root = root,
           .tail = tail};
@@ -111,10 +111,9 @@ double poisson_of_word(double mean, std::uint32_t word) {
   if (std::signbit(single) || std::isnan(single)) return poisson::kUndecided;
   if (single < fits::kSmallMean) return poisson_of_small_mean(single, word);
   const ContinuousCount x = continuous_count(mean, word);
-  const float steps = std::floor(x.offset);
-  const float distance = std::min(x.offset - steps, (steps + 1.0F) - x.offset);
+  const float steps = std::nearbyint(x.offset);
   // As in poisson::quantile_of_normal: the low word moves x by less than root / tail.
-  const bool decided = x.in_range && (distance - x.bound) * x.tail > x.root;
+  const bool decided = x.in_range && (x.room - std::fabs(x.offset - steps)) * x.tail > x.root;
   return decided ? std::floor(mean) + static_cast<double>(steps) : poisson::kUndecided;
 }
 

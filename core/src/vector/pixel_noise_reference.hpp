@@ -12,10 +12,11 @@ struct NormalOfWord {
 };
 NormalOfWord normal_of_word(std::uint32_t word);
 
-/// The continuous Poisson quantile less floor(mean), for means that are not small, with the bound on its error.
+/// The continuous Poisson quantile less floor(mean) + 1/2, for means that are not small. It decides the count where it
+/// is less than `room` from an integer, its nearest: half a step less the bound on its error.
 struct ContinuousCount {
   float offset;
-  float bound;
+  float room;
   bool in_range;  ///< of the fits
   float root;     ///< of the mean
   float tail;     ///< of normal_of_word()

@@ -25,8 +25,9 @@ namespace hn = hwy::HWY_NAMESPACE;
 /// rows are cut into blocks; narrow ones, as of windows, share one, so that no vector runs empty.
 class WordBlocks {
  public:
-  static constexpr std::size_t kBlock = 256;        // pixels; some kilobytes on the stack
-  static constexpr std::size_t kWidestVector = 16;  // singles
+  static constexpr std::size_t kBlock = 256;                // pixels; some kilobytes on the stack
+  static constexpr std::size_t kWidestVector = 16;          // singles
+  static constexpr std::size_t kSlack = 4 * kWidestVector;  // so that loops may take four vectors at a time
 
   WordBlocks(const RandomStream& stream, const PixelPlaces& pixels)
       : keys_(stream), pixels_(pixels), low_counter_(pixel_counter(address_of(pixels, 0, 0), 0)) {}
@@ -45,7 +46,7 @@ class WordBlocks {
   }
   [[nodiscard]] std::size_t first() const { return first_; }
   [[nodiscard]] std::size_t size() const { return size_; }
-  /// Readable, without meaning, up to a whole vector beyond size().
+  /// Readable, without meaning, up to kSlack words beyond size().
   [[nodiscard]] const std::uint32_t* words() const { return words_; }
 
  private:
@@ -64,15 +65,15 @@ class WordBlocks {
     const int x = area.x0 + static_cast<int>(column_);
     const RandomWords counter = pixel_counter(address_of(pixels_, x, area.y0 + row_), x);
     const Words64 d;
-    Vector64 c0 = in_philox_order(hn::Iota(d, counter[0]));
-    const Vector64 c1 = hn::Set(d, std::uint64_t{counter[1]});
-    const Vector64 c2 = hn::Set(d, std::uint64_t{counter[2]});
-    const Vector64 c3 = hn::Set(d, std::uint64_t{counter[3]});
-    const Vector64 step = hn::Set(d, std::uint64_t{philox_counters()});
+    Counters c0{in_philox_order(hn::Iota(d, counter[0])),
+                {in_philox_order(hn::Iota(d, counter[0] + HWY_LANES(std::uint64_t)))}};
+    const Counters c1 = all_of<Counters>(counter[1]);
+    const Counters c2 = all_of<Counters>(counter[2]);
+    const Counters c3 = all_of<Counters>(counter[3]);
     const std::size_t counters = counters_of(x, size_);
     for (std::size_t i = 0; i < counters; i += philox_counters()) {
       philox(keys_, c0, c1, c2, c3, buffer_.data() + kWordsOfCounter * i);
-      c0 = hn::Add(c0, step);
+      c0 = c0 + std::uint64_t{philox_counters()};
     }
     words_ = buffer_.data() + lead_of(x);
     column_ += size_;
@@ -118,12 +119,14 @@ class WordBlocks {
       next_row();
     }
     for (std::size_t i = counters; i % kAtOnce != 0; ++i) columns[i] = lines[i] = 0;
-    const Words64 d;
-    const Vector64 c2 = hn::Set(d, std::uint64_t{low_counter_[2]});
-    const Vector64 c3 = hn::Set(d, std::uint64_t{low_counter_[3]});
+    const Counters c2 = all_of<Counters>(low_counter_[2]);
+    const Counters c3 = all_of<Counters>(low_counter_[3]);
+    const auto load = [](const std::uint64_t* from) {
+      const Words64 d;
+      return Counters{in_philox_order(hn::Load(d, from)), {in_philox_order(hn::Load(d, from + hn::Lanes(d)))}};
+    };
     for (std::size_t i = 0; i < counters; i += kAtOnce)
-      philox(keys_, in_philox_order(hn::Load(d, columns.data() + i)), in_philox_order(hn::Load(d, lines.data() + i)),
-             c2, c3, buffer_.data() + kWordsOfCounter * i);
+      philox(keys_, load(columns.data() + i), load(lines.data() + i), c2, c3, buffer_.data() + kWordsOfCounter * i);
     std::uint32_t* packed = packed_.data();
     for (std::size_t r = 0; r < rows; ++r) {
       // A fixed length is copied in two instructions; what is too much of it is overwritten by the next row.
@@ -146,8 +149,8 @@ class WordBlocks {
   std::size_t first_ = 0;
   std::size_t size_ = 0;
   const std::uint32_t* words_ = nullptr;
-  alignas(64) std::array<std::uint32_t, kCounters * kWordsOfCounter + kWidestVector> buffer_;
-  alignas(64) std::array<std::uint32_t, kBlock + kWidestVector> packed_;
+  alignas(64) std::array<std::uint32_t, kCounters * kWordsOfCounter + kSlack> buffer_;
+  alignas(64) std::array<std::uint32_t, kBlock + kSlack> packed_;
 };
 
 }  // namespace astroid::HWY_NAMESPACE

@@ -9,7 +9,7 @@ namespace astroid {
 /// mirror it in the middle of the detector, for nodes read outwards from it.
 ///
 /// Reference pixels are left alone: they mirror reference pixels, which hold next to nothing.
-/// @source F62
+/// @source F72
 class CrossTalk final : public Effect {
  public:
   static constexpr EffectSpec kSpec{.name = "cross-talk",

@@ -30,7 +30,7 @@ class OpenShutterSmearing final : public Effect {
 /// The same for a frame that is moved fast into a dark store: a row passes those below it in the transfer after the
 /// exposure, and has passed those above it in the one before, which may take another time (or none, where the charge is
 /// dumped). Overscan rows pass all rows after the exposure.
-/// @source F60
+/// @source F70
 class FrameTransferSmearing final : public Effect {
  public:
   static constexpr EffectSpec kSpec{.name = "frame-transfer-smearing",

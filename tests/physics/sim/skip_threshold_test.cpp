@@ -110,6 +110,19 @@ TEST_P(SkippedBelowThreshold, IsHarmless) {
 INSTANTIATE_TEST_SUITE_P(
     Effects, SkippedBelowThreshold,
     testing::Values(SkipCase{"sky", [](Mission& m, double v) { m.field.sky_background = ElectronsPerSecond(v); }, 10.0},
+                    SkipCase{"stray-light",
+                             [](Mission& m, double v) {
+                               m.field.stray_light = {ElectronsPerSecond(v), 0.5, -0.5};
+                             },
+                             10.0},
+                    SkipCase{"zodiacal-sky",
+                             [](Mission& m, double v) {
+                               // The pixel makes the sky faint: its scale, not the stars of the laboratory, is the
+                               // strength.
+                               m.field.sky = SkyModel::kZodiacal;
+                               m.ccd.pixel_scale = PixelScale(v);
+                             },
+                             15.0},
                     SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); },
                              10.0},
                     SkipCase{"open-shutter-smearing",

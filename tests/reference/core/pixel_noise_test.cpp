@@ -108,8 +108,8 @@ TEST(PixelPoisson, LeavesAFactorOfTwoInItsBound) {
       const double w = standard_normal(word);
       const double density = std::exp(-0.5 * w * w) / std::sqrt(2.0 * 3.14159265358979);
       const double slack = 1.4 * root * 0.5 * 0x1p-32 / density;
-      const double error = std::fabs(static_cast<double>(x.offset) - (n + 1.0 - std::floor(mean))) - slack;
-      worst = std::max(worst, error / static_cast<double>(x.bound));
+      const double error = std::fabs(static_cast<double>(x.offset) - (n + 0.5 - std::floor(mean))) - slack;
+      worst = std::max(worst, error / (0.5 - static_cast<double>(x.room)));
     }
   }
   EXPECT_LT(worst, 0.5);

@@ -77,6 +77,19 @@ std::vector<Switch> switches() {
          m.satellite.jitter.yaw = m.satellite.jitter.roll = Arcseconds(6.0);
          m.satellite.jitter.timescale = Seconds(3.0);
        }},
+      {"drift", [](Mission& m) { m.satellite.drift.yaw_rate = Arcseconds(4000.0); }},
+      {"re-pointing",
+       [](Mission& m) {
+         m.satellite.quarter_days = 30.0 / 86400.0;
+         m.satellite.repointing.pitch = m.satellite.repointing.roll = Arcseconds(9.0);
+         m.satellite.drift.roll = Arcseconds(60.0);
+       }},
+      {"aberration", [](Mission& m) { m.satellite.aberration = true; }},
+      {"zodiacal sky", [](Mission& m) { m.field.sky = SkyModel::kZodiacal; }},
+      {"stray light",
+       [](Mission& m) {
+         m.field.stray_light = {.level = ElectronsPerSecond(64.0), .gradient_x = 0.5, .gradient_y = -0.5};
+       }},
       {"narrow PSF", [](Mission& m) { m.psf.sigma = Pixels(0.05); }},
       {"wide PSF", [](Mission& m) { m.psf.sigma = Pixels(4.5); }},
       {"rough", [](Mission& m) { m.simulation.accuracy = Ppm(10000.0); }},

@@ -8,6 +8,7 @@
 
 #include "astroid/analysis/budget.hpp"
 #include "astroid/analysis/contamination.hpp"
+#include "astroid/analysis/focal_plane.hpp"
 #include "astroid/analysis/noise_vs_magnitude.hpp"
 #include "astroid/analysis/recovery.hpp"
 #include "astroid/analysis/target_metrics.hpp"
@@ -22,6 +23,14 @@ std::span<const Column<NoiseBin>> noise_columns();                  ///< noise_v
 std::span<const Column<RecoveryBin>> recovery_columns();            ///< magnitude_recovery.csv
 std::span<const Column<ContaminationRow>> contamination_columns();  ///< contamination.csv
 std::span<const Column<BudgetRow>> budget_columns();                ///< noise_budget.csv
+
+/// The surfaces over the focal plane at one place.
+struct FocalPlaneMapRow {
+  double x, y;  ///< px
+  FocalPlaneValue nsr_predicted, nsr_measured, spr, recovery_mmag;
+};
+std::span<const Column<SubFieldMetrics>> focal_plane_columns();       ///< focal_plane.csv
+std::span<const Column<FocalPlaneMapRow>> focal_plane_map_columns();  ///< focal_plane_map.csv
 
 /// noise_budget.csv alone, for `astroid budget --analytic`. @throws EnvironmentError(path, cause)
 void write_noise_budget(const std::filesystem::path& path, std::span<const BudgetRow> rows);

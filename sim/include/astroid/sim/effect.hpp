@@ -12,6 +12,7 @@
 
 #include "astroid/core/frame.hpp"
 #include "astroid/core/random.hpp"
+#include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "astroid/sim/conditions.hpp"
 #include "astroid/sim/moving_image.hpp"
@@ -97,19 +98,22 @@ struct EffectNeed {
 
 /// What rendering a star takes.
 struct RenderedStar {
-  PixelPosition position;   ///< px, at the nominal pointing
-  double electrons = 0.0;   ///< per exposure
-  double half_width = 0.0;  ///< of its stamp, px
-  AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
+  PixelPosition position;         ///< px, at the nominal pointing
+  double electrons = 0.0;         ///< per exposure
+  double half_width = 0.0;        ///< of its stamp, px
+  AttitudeJacobian motion;        ///< px per arcsec of yaw, pitch and roll
+  AberrationJacobian aberration;  ///< px per velocity of the spacecraft
+  int variability = -1;           ///< of the scene; -1: constant
 };
 
 /// What happens to one camera that does not change from exposure to exposure; built once, then only read.
 struct CameraState {
   int camera = 0;
-  std::shared_ptr<const PixelLayout> layout;                  ///< the computed pixels
-  std::vector<Strip> strips;                                  ///< of the layout
-  std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][area]: those that may reach it
-  Plane<float, unit::Relative> prnu;                          ///< pixel response, mean 1; empty when the effect is off
+  std::shared_ptr<const PixelLayout> layout;                      ///< the computed pixels
+  std::vector<Strip> strips;                                      ///< of the layout
+  std::vector<std::vector<std::vector<RenderedStar>>> stars;      ///< [strip][area]: those that may reach it
+  std::vector<std::vector<std::vector<RenderedStar>>> variables;  ///< likewise those whose flux varies
+  Plane<float, unit::Relative> prnu;                ///< pixel response, mean 1; empty when the effect is off
   Plane<float, unit::ExpectedElectrons> dark;       ///< dark electrons per exposure; empty when the effect is off
   std::shared_ptr<const SmearedColumns> smearing;   ///< of the columns of the layout
   Plane<float, unit::ExpectedElectrons> unsmeared;  ///< what frame transfer smears less than that; empty: nothing

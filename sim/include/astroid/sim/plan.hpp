@@ -37,6 +37,7 @@ struct PlanKnobs {
   int attitude_steps = 1;         ///< per exposure
   AttitudePolynomial polynomial;  ///< no terms unless the treatment is kPolynomial
   std::vector<StampTier> stamps;  ///< brightest first
+  bool variables = false;         ///< whether variable stars are rendered apart from the others
   [[nodiscard]] double stamp_half_width(double electrons) const;
 };
 
