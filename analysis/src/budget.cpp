@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/detector_noise.hpp"
 #include "astroid/core/photometric.hpp"
 
 namespace astroid {

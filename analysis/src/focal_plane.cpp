@@ -85,9 +85,11 @@ FocalPlaneSurface::FocalPlaneSurface(std::span<const FocalPlanePoint> points, co
       centre_y_(detector.y0 + 0.5 * (detector.ny - 1)),
       per_half_x_(2.0 / std::max(1, detector.nx - 1)),
       per_half_y_(2.0 / std::max(1, detector.ny - 1)) {
+  const auto has_error = [](const FocalPlanePoint& p) { return std::isfinite(p.is.error) && p.is.error > 0.0; };
+  const bool weighted = std::ranges::any_of(points, has_error);
   std::vector<FocalPlanePoint> known;
   for (const FocalPlanePoint& point : points)
-    if (std::isfinite(point.is.value)) known.push_back(point);
+    if (std::isfinite(point.is.value) && (!weighted || has_error(point))) known.push_back(point);
   const std::size_t n = known.size();
   if (n == 0) return;
   constexpr std::size_t kForQuadratic = 9;
@@ -95,8 +97,6 @@ FocalPlaneSurface::FocalPlaneSurface(std::span<const FocalPlanePoint> points, co
   degree_ = n >= kForQuadratic ? 2 : n >= kForPlane ? 1 : 0;
   constexpr std::size_t kTerms[] = {1, 3, 6};
   count_ = kTerms[degree_];
-  const bool weighted = std::ranges::all_of(
-      known, [](const FocalPlanePoint& p) { return std::isfinite(p.is.error) && p.is.error > 0.0; });
 
   const Matrix design(gsl_matrix_alloc(n, count_));
   const Vector values(gsl_vector_alloc(n));

@@ -32,7 +32,8 @@ NoiseByCause median_causes(const std::vector<const TargetMetrics*>& stars) {
   };
   return {cause(&NoiseByCause::photon),  cause(&NoiseByCause::contaminants), cause(&NoiseByCause::background),
           cause(&NoiseByCause::readout), cause(&NoiseByCause::quantisation), cause(&NoiseByCause::background_estimate),
-          cause(&NoiseByCause::jitter),  cause(&NoiseByCause::prnu_jitter)};
+          cause(&NoiseByCause::jitter),  cause(&NoiseByCause::prnu_jitter),  cause(&NoiseByCause::smearing),
+          cause(&NoiseByCause::bias),    cause(&NoiseByCause::drift)};
 }
 
 MedianEstimate median_ratio(const std::vector<const TargetMetrics*>& stars, bool within) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "astroid/core/detector_noise.hpp"
+#include "astroid/core/jitter_noise.hpp"
 #include "astroid/core/photometric.hpp"
 
 namespace astroid {
@@ -30,13 +31,22 @@ RunSetup run_setup(const Mission& mission) {
   setup.cameras = mission.telescope.cameras;
   setup.simulated_cameras = mission.telescope.simulated_cameras;
   setup.prnu = pixel_response_rms(mission);
+  setup.flat_field = mission.ccd.flat_field.rms;
+  setup.flat_field_exponent = mission.ccd.flat_field.exponent;
+  setup.gain_drift = mission.ccd.electronics.gain_drift;
+  setup.bias_drift = mission.ccd.electronics.bias_drift * mission.ccd.gain.value();
   setup.uncontaminated_spr = mission.analysis.uncontaminated_spr;
   return setup;
 }
 
 double NoiseByCause::total() const {
   return std::sqrt(square(photon) + square(contaminants) + square(background) + square(readout) + square(quantisation) +
-                   square(background_estimate) + square(jitter) + square(prnu_jitter));
+                   square(background_estimate) + square(jitter) + square(prnu_jitter) + square(smearing) +
+                   square(bias) + square(drift));
+}
+
+double NoiseByCause::of_levels() const {
+  return std::hypot(std::hypot(background, background_estimate), std::hypot(smearing, bias));
 }
 
 PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup) {
@@ -57,6 +67,8 @@ PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& m
   out.bin.readout = std::sqrt(budget.var_readout) * ppm;
   out.bin.quantisation = std::sqrt(budget.var_quantisation) * ppm;
   out.bin.background_estimate = std::sqrt(budget.var_background_estimate) * ppm;
+  out.bin.smearing = std::sqrt(budget.var_smearing + budget.var_smearing_correction) * ppm;
+  out.bin.bias = std::sqrt(budget.var_bias) * ppm;
 
   // The estimator's gradient is that of the whole flux in the aperture; the noise is relative to the target's part.
   const double whole = 1.0 / (1.0 - estimator.spr_total);
@@ -73,10 +85,15 @@ PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& m
   out.bin.jitter = kPpm * std::sqrt(jitter_bin);
   out.bin.prnu_jitter = kPpm * std::sqrt(prnu_bin / cameras);
 
+  // A sinusoid of amplitude a has the variance a²/2. It is the same in all cameras and, slower than a bin, does not
+  // average out.
+  const double drift =
+      0.5 * (square(setup.gain_drift * whole) + square(setup.bias_drift * budget.bias_weight / budget.target));
+  out.bin.drift = kPpm * std::sqrt(drift);
   const double independent = budget.variance() / square(budget.target);
-  out.exposure = std::sqrt(independent + jitter_exposure + prnu_exposure);
-  out.bin_common = out.bin.jitter;
-  out.bin_simulated = kPpm * std::sqrt((independent / n + prnu_bin) / simulated + jitter_bin);
+  out.exposure = std::sqrt(independent + jitter_exposure + prnu_exposure + drift);
+  out.bin_common = std::hypot(out.bin.jitter, out.bin.drift);
+  out.bin_simulated = kPpm * std::sqrt((independent / n + prnu_bin) / simulated + jitter_bin + drift);
   // Within a bin the variance is what the mean of the bin has not taken; n / (n - 1) as the estimator divides by n - 1.
   const double bessel = n > 1.0 ? n / (n - 1.0) : 1.0;
   const double shared = bessel * std::max(0.0, jitter_exposure - jitter_bin);
@@ -103,12 +120,18 @@ TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estima
   target.spr_tot = estimator.spr_total;
   target.crowdsap = 1.0 - estimator.spr_total;
   target.flfrcsap = estimator.enclosed_fraction;
-  target.flux_expected = estimator.budget.target + estimator.budget.contaminants;
-  target.prnu_magnitude = kPogson * setup.prnu * estimator.prnu_static * (1.0 - estimator.spr_total) /
-                          std::sqrt(static_cast<double>(setup.simulated_cameras));
+  const double stars = estimator.budget.target + estimator.budget.contaminants;
+  target.flux_smeared = estimator.budget.smearing;
+  target.flux_expected = stars + target.flux_smeared;
+  const double fixed =
+      std::sqrt(square(setup.prnu * estimator.prnu_static) +
+                square(flat_field_static_noise(setup.flat_field, setup.flat_field_exponent, estimator.prnu_static)));
+  target.prnu_magnitude =
+      kPogson * fixed * (1.0 - estimator.spr_total) / std::sqrt(static_cast<double>(setup.simulated_cameras));
   target.neighbour_magnitude = kPogson * std::sqrt(estimator.budget.var_neighbour_doubt) / estimator.budget.target;
   target.causes.contamination = kMagnitudeFactor * std::log10(1.0 - estimator.spr_total);
   target.causes.aperture_loss = -kMagnitudeFactor * std::log10(estimator.enclosed_fraction);
+  if (target.flux_smeared != 0.0) target.causes.smearing = -kMagnitudeFactor * std::log10(target.flux_expected / stars);
   return target;
 }
 
@@ -151,9 +174,12 @@ void add_measurement(TargetMetrics& target, const SeriesSummary& series, double 
     target.mag_measured = target.mag + target.delta_mag;
     target.mag_err = kPogson * relative;
     target.causes.residual = target.delta_mag - target.causes.contamination - target.causes.aperture_loss;
+    target.causes.residual -= target.causes.smearing;
   }
   // From noise relative to all light in the aperture to noise relative to the target's.
-  const double whole = 1.0 / target.crowdsap;
+  const double stars = target.flux_expected - target.flux_smeared;
+  const double smeared = target.flux_smeared != 0.0 ? target.flux_expected / stars : 1.0;
+  const double whole = smeared / target.crowdsap;
   target.nsr_exposure_measured = series.exposure.scaled(whole);
   target.nsr_1h_within_measured = series.bin_within.scaled(kPpm * whole);
   target.nsr_1h_measured = series.bin_means.scaled(kPpm * whole);

@@ -129,6 +129,8 @@ int run_command_line(int argc, char** argv) {
       ->capture_default_str();
   sub->add_option("--gain", photometry_options.gain, "if the header does not say it")->type_name("E-/ADU");
   sub->add_option("--read-noise", photometry_options.read_noise, "if the header does not say it")->type_name("E-");
+  sub->add_flag("--ignore-overscan", photometry_options.ignore_overscan,
+                "do not subtract what OVERSCAN extensions show from the columns of the image");
   sub->add_option("--saturation", photometry_options.saturation, "if the header does not say it")->type_name("ADU");
   sub->add_option("--zero-point", photometry_options.zero_point, "magnitude of one electron per second")
       ->type_name("MAG");

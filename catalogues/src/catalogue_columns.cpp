@@ -298,8 +298,13 @@ CatalogueColumns find_columns(const CatalogueTable& table, const CatalogueOption
   }
   columns.id = find_first(table, kIdNames);
   columns.teff = find_first(table, kTeffNames);
-  constexpr std::array<std::string_view, 3> kProperMotionNames{"pmra", "pm_ra", "pmra_mas"};
-  if (find_first(table, kProperMotionNames)) columns.notes.emplace_back("proper motions are not applied");
+  const auto pm_ra = find_first(table, kPmRaNames);
+  const auto pm_dec = find_first(table, kPmDecNames);
+  if (columns.positions == PositionKind::kSky && pm_ra && pm_dec) {
+    columns.pm_ra = pm_ra;
+    columns.pm_dec = pm_dec;
+    columns.epoch = find_first(table, kEpochNames);
+  }
   return columns;
 }
 

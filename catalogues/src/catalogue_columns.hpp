@@ -21,6 +21,9 @@ struct CatalogueColumns {
   std::optional<std::size_t> colour;      ///< the colour, or its blue magnitude when colour_red is there
   std::optional<std::size_t> colour_red;
   std::optional<std::size_t> teff;
+  std::optional<std::size_t> pm_ra;  ///< both proper motions, or none
+  std::optional<std::size_t> pm_dec;
+  std::optional<std::size_t> epoch;
   PositionKind positions = PositionKind::kSky;
   BrightnessKind kind = BrightnessKind::kMagnitude;
   std::string passband;

@@ -59,6 +59,7 @@ class RowReader {
       if (!read_brightness(row, star)) continue;
       star.colour = read_colour(row);
       star.teff = columns_.teff ? optional_number(row, *columns_.teff, {kCoolestStar, kHottestStar, ""}) : kUnknown;
+      read_proper_motion(row, star);
       if (columns_.id) star.id = table_.text(row, *columns_.id);
       if (is_missing(star.id)) star.id.clear();
       catalogue.stars.push_back(std::move(star));
@@ -139,6 +140,21 @@ class RowReader {
     }
     star.magnitude = Magnitude(number(row, column, {kBrightestMagnitude, kFaintestMagnitude, "-30 .. 40 mag"}));
     return true;
+  }
+
+  void read_proper_motion(std::size_t row, CatalogueStar& star) {
+    if (!columns_.pm_ra || !columns_.pm_dec) return;
+    constexpr double kFastest = 20000.0;  // mas/yr: twice Barnard's star; beyond are marks for "none"
+    constexpr double kFirstYear = 1800.0;
+    constexpr double kLastYear = 2200.0;
+    const Bounds motions{-kFastest, kFastest, ""};
+    const double ra = optional_number(row, *columns_.pm_ra, motions);
+    const double dec = optional_number(row, *columns_.pm_dec, motions);
+    if (std::isnan(ra) || std::isnan(dec)) return;
+    star.pm_ra = ra;
+    star.pm_dec = dec;
+    const double epoch = columns_.epoch ? optional_number(row, *columns_.epoch, {kFirstYear, kLastYear, ""}) : kUnknown;
+    if (!std::isnan(epoch)) star.epoch = epoch;
   }
 
   double read_colour(std::size_t row) {

@@ -21,6 +21,11 @@ inline constexpr std::array<std::string_view, 2> kElectronNames{"electrons", "el
 inline constexpr std::array<std::string_view, 2> kMagnitudeNames{"mag", "magnitude"};
 inline constexpr std::array<std::string_view, 5> kTeffNames{"teff", "teff_gspphot", "teff_val", "teff_k", "t_eff"};
 
+/// Proper motions, mas/yr, that of right ascension times cos(dec); and the Julian year of the positions.
+inline constexpr std::array<std::string_view, 3> kPmRaNames{"pmra", "pm_ra", "pmra_mas"};
+inline constexpr std::array<std::string_view, 5> kPmDecNames{"pmdec", "pm_dec", "pmde", "pm_de", "pmdec_mas"};
+inline constexpr std::array<std::string_view, 3> kEpochNames{"ref_epoch", "epoch", "refepoch"};
+
 /// A magnitude column whose name tells the passband. `exact`: its case matters.
 struct MagnitudeName {
   std::string_view name;

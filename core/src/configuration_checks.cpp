@@ -2,7 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <vector>
 
+#include "astroid/core/response.hpp"
 #include "configuration_draft.hpp"
 
 namespace astroid::configuration {
@@ -91,6 +96,67 @@ void check_cmos(const Mission& m, Checker& checker) {
                   "CMOS/Telegraph/Fraction", "is 0, though pixels jump", "more than 0 e-/px/s");
 }
 
+void check_traps(const Mission& m, Checker& checker) {
+  const CtiSettings& cti = m.ccd.cti;
+  if (cti.model != CtiModel::kTraps) return;
+  const std::size_t species = cti.trap_density.size();
+  checker.require(species > 0, "CCD/CTI/TrapDensity", "CCD/CTI/model", "is missing",
+                  "the density of each species, since the model is traps");
+  const auto check = [&](std::size_t number, std::string_view path) {
+    checker.require(species == 0 || number == species, path, "CCD/CTI/TrapDensity",
+                    fmt::format("has {} values", number), fmt::format("{}, one for each density", species));
+  };
+  check(cti.trap_cross_section.size(), "CCD/CTI/CrossSection");
+  check(cti.trap_release_time.size(), "CCD/CTI/ReleaseTime");
+  if (!cti.register_density.empty()) check(cti.register_density.size(), "CCD/CTI/RegisterDensity");
+}
+
+std::string one_for_each(std::string_view what, int nodes) {
+  return fmt::format("{} {}, one for each node, or none", nodes, what);
+}
+
+void check_readout(const Mission& m, Checker& checker) {
+  const CcdSettings& ccd = m.ccd;
+  const auto fits = [&](const std::vector<double>& list) {
+    return list.empty() || list.size() == static_cast<std::size_t>(ccd.nodes.count);
+  };
+  checker.require(fits(ccd.nodes.gain_factor), "CCD/Nodes/GainFactors", "CCD/Nodes/Count",
+                  fmt::format("{} numbers for {} nodes", ccd.nodes.gain_factor.size(), ccd.nodes.count),
+                  one_for_each("factors", ccd.nodes.count));
+  checker.require(fits(ccd.nodes.noise_factor), "CCD/Nodes/NoiseFactors", "CCD/Nodes/Count",
+                  fmt::format("{} numbers for {} nodes", ccd.nodes.noise_factor.size(), ccd.nodes.count),
+                  one_for_each("factors", ccd.nodes.count));
+  // The rows of the upper half leave the other way: what they pass is not the whole column.
+  checker.require(ccd.smearing.model == SmearingModel::kNone || ccd.nodes.count < 4, "CCD/Smearing/model",
+                  "CCD/Nodes/Count", "four nodes read the halves of a column in opposite directions",
+                  "none, or one or two nodes");
+  const auto check_response = [&](const std::vector<double>& coefficients, std::string_view path) {
+    checker.require(coefficients.empty() || coefficients.size() == 3, path, "",
+                    fmt::format("{} coefficients", coefficients.size()), "three numbers, a0 a1 a2, or none");
+    if (coefficients.size() != 3) return;
+    const double top = std::ldexp(1.0, ccd.adc_bits) - 1.0;
+    checker.require(make_response(coefficients).rises(0.0, top), path, "CCD/ADCBits",
+                    "the response falls within the range of the converter",
+                    fmt::format("1 + a1 + 2 a2 I above 0 from 0 to {} ADU", top));
+  };
+  check_response(ccd.electronics.nonlinearity, "CCD/Electronics/NonLinearity");
+  check_response(m.photometry.calibration.nonlinearity_coefficients, "Photometry/Calibration/NonLinearityCoefficients");
+}
+
+void check_calibration(const Mission& m, Checker& checker) {
+  const CalibrationSettings& calibration = m.photometry.calibration;
+  const ReferencePixels& reference = m.ccd.reference;
+  checker.require(!calibration.smearing || reference.parallel_overscan > 0, "Photometry/Calibration/Smearing",
+                  "CCD/ReferencePixels/Overscan", "there are no overscan rows to correct it with",
+                  "off, or CCD/ReferencePixels/Overscan of 1 px or more");
+  const bool has_prescan = reference.prescan > 0 && (m.ccd.nodes.count == 1 || reference.serial_overscan > 0);
+  checker.require(calibration.bias != BiasSource::kPrescan || has_prescan, "Photometry/Calibration/Bias",
+                  m.ccd.nodes.count == 1 ? "CCD/ReferencePixels/Prescan" : "CCD/ReferencePixels/SerialOverscan",
+                  "there are no columns that show the bias of every node",
+                  m.ccd.nodes.count == 1 ? "known, or CCD/ReferencePixels/Prescan of 1 px or more"
+                                         : "known, or Prescan and SerialOverscan of 1 px or more");
+}
+
 void check_photometry(const Mission& m, Checker& checker) {
   const PhotometrySettings& photometry = m.photometry;
   checker.require(photometry.annulus_inner < photometry.annulus_outer, "Photometry/Annulus/Inner",
@@ -107,13 +173,22 @@ void check_together(const Mission& mission, Draft& draft) {
   check_times(mission, checker);
   check_detector(mission, checker);
   check_cmos(mission, checker);
+  check_traps(mission, checker);
+  check_readout(mission, checker);
+  check_calibration(mission, checker);
   check_photometry(mission, checker);
   checker.require(mission.telescope.simulated_cameras <= mission.telescope.cameras, "Telescope/SimulatedCameras",
                   "Telescope/Cameras", "more than there are",
                   fmt::format("at most Cameras ({})", mission.telescope.cameras));
-  checker.require(mission.satellite.jitter.model != JitterModel::kFile || !mission.satellite.jitter.file.empty(),
-                  "Satellite/Jitter/File", "Satellite/Jitter/model", "is missing",
-                  "the name of a readable file, since the model is file");
+  const JitterSettings& jitter = mission.satellite.jitter;
+  const bool from_file = jitter.model == JitterModel::kFile || jitter.model == JitterModel::kSpectrum;
+  checker.require(!from_file || !jitter.file.empty(), "Satellite/Jitter/File", "Satellite/Jitter/model", "is missing",
+                  fmt::format("the name of a readable file, since the model is {}",
+                              jitter.model == JitterModel::kFile ? "file" : "psd"));
+  const StrayLightSettings& stray = mission.field.stray_light;
+  checker.require(std::fabs(stray.gradient_x) + std::fabs(stray.gradient_y) <= 1.0, "StellarField/StrayLight/GradientY",
+                  "StellarField/StrayLight/GradientX", "makes the stray light negative in a corner",
+                  "at most 100 % together with the other gradient, without their signs");
   checker.require(mission.psf.model != PsfModel::kTable || !mission.psf.file.empty(), "PSF/File", "PSF/Model",
                   "is missing", "the name of a readable file, since the model is table");
 }

@@ -93,11 +93,17 @@ std::string join_path(std::string_view parent, std::string_view name);
 // The sections of the table, one file each.
 std::vector<Parameter> simulation_parameters();
 std::vector<Parameter> satellite_parameters();
+std::vector<Parameter> motion_parameters();
 std::vector<Parameter> telescope_parameters();
+std::vector<Parameter> renderer_parameters();
 std::vector<Parameter> psf_parameters();
+std::vector<Parameter> intra_pixel_parameters();
 std::vector<Parameter> stellar_field_parameters();
+std::vector<Parameter> sky_parameters();
 std::vector<Parameter> ccd_parameters();
 std::vector<Parameter> cmos_parameters();
+std::vector<Parameter> pixel_effect_parameters();
+std::vector<Parameter> readout_parameters();
 std::vector<Parameter> photometry_parameters();
 std::vector<Parameter> analysis_parameters();
 std::vector<Parameter> output_parameters();

@@ -18,13 +18,27 @@ constexpr std::array kSections = {
     Section{"Satellite", "Where the spacecraft looks and how well it holds still."},
     Section{"Satellite/Pointing", "Direction of the optical axis, ICRS."},
     Section{"Satellite/Jitter", "Attitude noise, shared by all cameras."},
+    Section{"Satellite/Drift", "Slow motion of the line of sight."},
+    Section{"Satellite/Repointing", "Errors of pointing the spacecraft anew each quarter."},
     Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
     Section{"PSF", "The image of a star."},
+    Section{"PSF/IntraPixel", "Sensitivity within a pixel, relative to the pixel's mean."},
     Section{"StellarField", "The stars and the sky behind them."},
+    Section{"StellarField/StrayLight", "Light in every pixel that comes from outside the field."},
     Section{"CCD", "The detector and its electronics."},
     Section{"CCD/OpticalAxis",
             "Pixel where the optical axis meets the detector; the centre of the first pixel is (0, 0)."},
+    Section{"CCD/ReferencePixels", "Pixels that are read with the light-sensitive ones but see no light."},
+    Section{"CCD/Smearing", "Light that falls on charge while it is moved, in a detector without a shutter."},
+    Section{"CCD/Nodes", "Amplifiers that read parts of the detector at the same time."},
+    Section{"CCD/Electronics", "What the electronics do to the signal between the nodes and the converter."},
+    Section{"CCD/BadPixels", "Pixels that do not work, at places drawn once."},
     Section{"CCD/SubField", "The part of the detector that is simulated; without this element all of it."},
+    Section{"CCD/FlatField", "A pattern of sensitivity with a power-law spatial spectrum, beside the white PRNU."},
+    Section{"CCD/ChargeInjection", "Lines of charge that keep traps filled."},
+    Section{"CCD/CosmicRays", "Particles that leave tracks of charge."},
+    Section{"CCD/BrighterFatter", "Charge in a pixel pushes its boundaries inwards."},
+    Section{"CCD/CTI", "Charge that transfers leave behind."},
     Section{"CMOS", "What only a CMOS detector has; what both kinds have stands in CCD."},
     Section{"CMOS/Coupling", "Inter-pixel capacitance."},
     Section{"CMOS/Telegraph", "Random telegraph signal of the dark current."},
@@ -37,9 +51,10 @@ constexpr std::array kSections = {
 
 std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
-  for (auto part :
-       {simulation_parameters, satellite_parameters, telescope_parameters, psf_parameters, stellar_field_parameters,
-        ccd_parameters, cmos_parameters, photometry_parameters, analysis_parameters, output_parameters}) {
+  for (auto part : {simulation_parameters, renderer_parameters, satellite_parameters, motion_parameters,
+                    telescope_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters,
+                    sky_parameters, ccd_parameters, pixel_effect_parameters, readout_parameters, cmos_parameters,
+                    photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

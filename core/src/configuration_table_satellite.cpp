@@ -35,13 +35,14 @@ std::vector<Parameter> satellite_parameters() {
        .kind = Kind::kChoice,
        .is_attribute = true,
        .fallback = "none",
-       .choices = {"none", "red-noise", "file"},
+       .choices = {"none", "red-noise", "file", "psd"},
        .meaning = "Where the attitude noise comes from: nothing, an Ornstein-Uhlenbeck process with the rms and time "
-                  "scale given, or a file.",
+                  "scale given, a file of angles, or noise with the power spectral density in a file.",
        .example = "red-noise",
        .assign =
            [](Mission& m, const Value& v) {
-             constexpr JitterModel kModels[] = {JitterModel::kNone, JitterModel::kRedNoise, JitterModel::kFile};
+             constexpr JitterModel kModels[] = {JitterModel::kNone, JitterModel::kRedNoise, JitterModel::kFile,
+                                                JitterModel::kSpectrum};
              m.satellite.jitter.model = kModels[v.choice];
            }},
       {.path = "Satellite/Jitter/Yaw",
@@ -74,7 +75,9 @@ std::vector<Parameter> satellite_parameters() {
        .assign = [](Mission& m, const Value& v) { m.satellite.jitter.timescale = Seconds(v.real); }},
       {.path = "Satellite/Jitter/File",
        .kind = Kind::kFile,
-       .meaning = "Attitude against time (file model): columns time_s, yaw, pitch, roll, angles in arcsec.",
+       .meaning =
+           "Attitude against time (file model): columns time_s, yaw, pitch, roll, angles in arcsec. Or its one-sided "
+           "power spectral density (psd model): columns frequency_hz, yaw, pitch, roll, in arcsec^2/Hz.",
        .example = "jitter.csv",
        .assign = [](Mission& m, const Value& v) { m.satellite.jitter.file = v.text; }},
   };

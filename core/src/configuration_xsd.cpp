@@ -55,7 +55,11 @@ std::string bounds(const Parameter& parameter) {
   if (std::isfinite(range.minimum)) {
     facets += facet(range.minimum_is_open ? "minExclusive" : "minInclusive", fmt::format("{}", range.minimum));
   }
-  if (std::isfinite(range.maximum)) facets += facet("maxInclusive", fmt::format("{:.0f}", std::floor(range.maximum)));
+  if (std::isfinite(range.maximum)) {
+    const bool whole = parameter.kind == Kind::kInteger;
+    facets += facet("maxInclusive",
+                    whole ? fmt::format("{:.0f}", std::floor(range.maximum)) : fmt::format("{}", range.maximum));
+  }
   return facets;
 }
 

@@ -37,8 +37,8 @@ double read_variance(const Mission& mission) {
   return readout * readout + quantisation(mission) * quantisation(mission);
 }
 
-PixelNoise expected_pixel_noise(const Mission& mission) {
-  const ElectronsPerSecond rate = mission.field.sky_background + mission.ccd.dark_current;
+PixelNoise expected_pixel_noise(const Mission& mission, ElectronsPerSecond light) {
+  const ElectronsPerSecond rate = light + mission.ccd.dark_current;
   PixelNoise noise{.background = (rate * mission.simulation.exposure_time).value(),
                    .readout = mission.ccd.readout_noise.value(),
                    .quantisation = quantisation(mission)};
@@ -54,7 +54,7 @@ PixelNoise expected_pixel_noise(const Mission& mission) {
 }
 
 double fitted_readout_factor(const Mission& mission) {
-  const PixelNoise noise = expected_pixel_noise(mission);
+  const PixelNoise noise = expected_pixel_noise(mission, ElectronsPerSecond(0.0));
   return std::sqrt(noise.factors(0.0).readout);
 }
 

@@ -35,6 +35,10 @@ class FluxSpline {
   [[nodiscard]] static double integrate_column(std::span<const double> rows, const Edge& bottom, const Edge& top);
   [[nodiscard]] std::size_t coefficient_rows() const { return ny_ + 3; }
 
+  /// C's coefficients, coefficient_rows() rows of nx() + 3: B-splines centred on the edges -1 … nx() + 1 of the
+  /// samples.
+  [[nodiscard]] std::span<const double> coefficients() const { return coefficients_; }
+
   /// Flux in the rectangle [x0, x1] x [y0, y1], px from the PSF's origin.
   [[nodiscard]] double flux(PixelPosition lower, PixelPosition upper) const;
 

@@ -1,5 +1,6 @@
 #include "astroid/core/jitter_noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 
@@ -77,6 +78,10 @@ double ou_mean_rms(double rms, Seconds tau, const Cadence& cadence) {
     sum += (n - lag) * det::exp(-lag * step);  // smallest first
   }
   return rms * std::sqrt((averaged_variance(duration) + 2.0 * covariance * sum / n) / n);
+}
+
+double flat_field_static_noise(double rms, double exponent, double share) {
+  return rms * std::pow(share, std::max(0.0, 1.0 - 0.5 * exponent));
 }
 
 }  // namespace astroid

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "astroid/core/pixel_response.hpp"
 #include "astroid/core/psf.hpp"
 #include "flux_spline.hpp"
 
@@ -18,7 +19,8 @@ namespace astroid::detail {
 /// pixel: the interpolation runs across pixel boundaries without a seam, and sums to one wherever the star is.
 class PhaseLibrary {
  public:
-  PhaseLibrary(const FluxSpline& spline, int phases);
+  /// @param response  sensitivity within every pixel, by which the light is weighted.
+  PhaseLibrary(const FluxSpline& spline, int phases, PixelResponse response = {});
 
   void integrate(PixelPosition star, Rectangle box, std::span<double> fractions) const;
   void integrate_gradient(PixelPosition star, Rectangle box, std::span<double> dpdx, std::span<double> dpdy) const;
@@ -60,7 +62,11 @@ class PhaseLibrary {
   template <class F>
   void for_each_run(const Axis& x, const Axis& y, Rectangle box, F&& f) const;
 
+  // Light in the square of 3 x 3 pixels about (x, y), weighted.
+  [[nodiscard]] double exact_flux(const FluxSpline& spline, PixelPosition star, int x, int y) const;
+
   int phases_;
+  PixelResponse response_;
   Extent x_;
   Extent y_;
   std::vector<double> images_;  // [phase y][phase x][row][column]

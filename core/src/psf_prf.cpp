@@ -17,10 +17,10 @@ namespace {
 constexpr int kFewestPhases = 4;                        // where the search begins
 constexpr double kMostBytes = 256.0 * 1024.0 * 1024.0;  // of a library; a stamp of 45 px has 128 phases then
 
-int refine(const detail::FluxSpline& spline, double accuracy) {
+int refine(const detail::FluxSpline& spline, double accuracy, const PixelResponse& response) {
   int phases = kFewestPhases;
   while (detail::PhaseLibrary::bytes(spline, 2 * phases) <= kMostBytes &&
-         detail::PhaseLibrary(spline, phases).measured_error(spline) > accuracy) {
+         detail::PhaseLibrary(spline, phases, response).measured_error(spline) > accuracy) {
     phases *= 2;
   }
   return phases;
@@ -28,8 +28,11 @@ int refine(const detail::FluxSpline& spline, double accuracy) {
 
 class PrfPsf final : public PixelPsf {
  public:
-  PrfPsf(detail::FluxSpline spline, int phases)
-      : spline_(std::move(spline)), library_(spline_, phases), error_(library_.measured_error(spline_)) {}
+  PrfPsf(detail::FluxSpline spline, int phases, const PixelResponse& response)
+      : spline_(std::move(spline)),
+        library_(spline_, phases, response),
+        error_(library_.measured_error(spline_)),
+        depth_(response.depth()) {}
 
   void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const override {
     ASTROID_CHECK_EQ(fractions.size(), box.size());
@@ -81,9 +84,10 @@ class PrfPsf final : public PixelPsf {
   [[nodiscard]] double approximation_error() const override { return error_; }
 
   [[nodiscard]] std::string description() const override {
-    return fmt::format("table of {} x {} samples, {} per px; library of {} x {} phases, aperture flux within {:.2g}",
-                       spline_.nx(), spline_.ny(), spline_.samples_per_pixel(), library_.phases(), library_.phases(),
-                       error_);
+    return fmt::format("table of {} x {} samples, {} per px{}; library of {} x {} phases, aperture flux within {:.2g}",
+                       spline_.nx(), spline_.ny(), spline_.samples_per_pixel(),
+                       depth_ > 0.0 ? ", weighted with the response within the pixel" : "", library_.phases(),
+                       library_.phases(), error_);
   }
 
  private:
@@ -96,20 +100,22 @@ class PrfPsf final : public PixelPsf {
   detail::FluxSpline spline_;
   detail::PhaseLibrary library_;
   double error_;
+  double depth_;  // of the response
 };
 
 }  // namespace
 
-std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases) {
+std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases,
+                                             const PixelResponse& response) {
   detail::FluxSpline spline(table);
-  if (phases == 0) phases = refine(spline, accuracy);
+  if (phases == 0) phases = refine(spline, accuracy, response);
   if (phases < 0 || detail::PhaseLibrary::bytes(spline, std::max(phases, 1)) > kMostBytes) {
     throw InputError(Problem{.parameter = "PSF/Phases",
                              .value = fmt::format("{}", phases),
                              .expected = "0, or a number whose library fits into 256 MiB",
                              .message = "a PSF library of so many phases cannot be made"});
   }
-  return std::make_shared<const PrfPsf>(std::move(spline), phases);
+  return std::make_shared<const PrfPsf>(std::move(spline), phases, response);
 }
 
 }  // namespace astroid

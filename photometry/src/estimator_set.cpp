@@ -39,10 +39,15 @@ double plain_sum(std::span<const std::uint32_t> pixel, const float* counts) {
   return combine(lanes);
 }
 
+/// A flag without what only the simulation knows.
+constexpr std::uint8_t seen(unsigned flag) {
+  return static_cast<std::uint8_t>(flag & ~unsigned{pixel_flag::kTruth});
+}
+
 std::uint8_t any_flag(std::span<const std::uint32_t> pixel, const std::uint8_t* flags) {
-  std::uint8_t any = 0;
-  for (const std::uint32_t p : pixel) any = static_cast<std::uint8_t>(any | flags[p]);
-  return any;
+  unsigned any = 0;
+  for (const std::uint32_t p : pixel) any |= flags[p];
+  return seen(any);
 }
 
 std::uint32_t aperture_flags(std::uint8_t pixel_flags) {
@@ -119,7 +124,7 @@ namespace {
 /// Most frames of a faint field have no flagged pixel at all: one pass over the bytes saves a gather per term.
 bool has_flags(const Frame& frame) {
   return std::any_of(frame.flags.pixels().begin(), frame.flags.pixels().end(),
-                     [](std::uint8_t flag) { return flag != 0; });
+                     [](std::uint8_t flag) { return seen(flag) != 0; });
 }
 }  // namespace
 
@@ -247,7 +252,7 @@ bool EstimatorSet::measure_spoilt(const detail::InterleavedFrames& frames, const
   if (in_background != 0) {
     scratch.good.clear();
     for (const std::uint32_t pixel : terms.background)
-      if (scratch.any_flag[pixel] == 0) scratch.good.push_back(pixel);
+      if (seen(scratch.any_flag[pixel]) == 0) scratch.good.push_back(pixel);
     if (2 * scratch.good.size() < terms.background.size()) return false;
     more |=
         (aperture_flags(in_background) & measurement_flag::kSaturated) != 0 ? measurement_flag::kSpoiltBackground : 0;
@@ -274,7 +279,7 @@ double EstimatorSet::background_without_spoilt(const Frame& frame, const Target&
     const float counts = frame.pixels.pixels()[pixel];
     const std::uint8_t pixel_flags = frame.flags.pixels()[pixel];
     saturated = saturated || (aperture_flags(pixel_flags) & measurement_flag::kSaturated) != 0;
-    if (pixel_flags != 0 || !std::isfinite(counts)) continue;
+    if (seen(pixel_flags) != 0 || !std::isfinite(counts)) continue;
     sum += static_cast<double>(counts);
     ++good;
   }

@@ -71,7 +71,8 @@ void StarEstimatorBuilder::judge_blend(const Rectangle& window, StarEstimator& e
     for (std::size_t i = 0; i < pixels; ++i) left += weights_[i] * doubts_[k * pixels + i];
     doubt += left * left;
   }
-  const double random = budget.variance() - budget.var_background_estimate;
+  const double random =
+      budget.variance() - budget.var_background_estimate - budget.var_smearing_correction - budget.var_bias;
   if (random + doubt > kBlendInflation * kBlendInflation * known_sigma_ * known_sigma_ ||
       doubt > kBlendDoubt * kBlendDoubt * budget.target * budget.target)
     estimator.flags |= measurement_flag::kBlended;

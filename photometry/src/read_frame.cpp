@@ -9,6 +9,7 @@
 #include "astroid/core/error.hpp"
 #include "astroid/core/fits.hpp"
 #include "astroid/photometry/image_photometry.hpp"
+#include "read_reference_pixels.hpp"
 
 namespace astroid {
 
@@ -64,6 +65,8 @@ class FrameReader {
     read_gain();
     read_saturation();
     set_flags();
+    if (options_.use_overscan && !is_cube_)
+      detail::subtract_overscan(reader_, unit_, options_.bias, file_.frame, file_.notes);
     try {
       file_.sky = SkyProjection::from_header(reader_.header_text(unit_), reader_.file());
     } catch (const InputError& error) {
@@ -85,6 +88,7 @@ class FrameReader {
     }
     const auto& axes = reader_.units().at(static_cast<std::size_t>(unit_ - 1)).axes;
     const bool cube = axes.size() > 2 && axes[2] > 1;
+    is_cube_ = cube;
     const auto image = cube ? reader_.read_plane<float, unit::Adu>(unit_, options_.plane)
                             : reader_.read_image<float, unit::Adu>(unit_);
     if (cube)
@@ -173,6 +177,7 @@ class FrameReader {
   const FrameReadOptions& options_;
   FitsReader reader_;
   int unit_;
+  bool is_cube_ = false;
   ImageFile file_;
 };
 

@@ -107,6 +107,7 @@ StarEstimator StarEstimatorBuilder::build(std::size_t star, const Rectangle& win
   }
   add_background(target, used, estimator);
   add_pattern_noise(used, estimator);
+  add_calibration_noise(estimator);
   if (fits_psf_) judge_blend(used, estimator);
   estimator.nsr_exposure = std::sqrt(estimator.budget.variance()) / estimator.budget.target;
   fill_gradients(star, neighbours, estimator);
@@ -152,6 +153,7 @@ void StarEstimatorBuilder::expected_in_window(std::size_t star, const Rectangle&
         add_star(*model_.psf, model_.stars[neighbour], stamps_[neighbour], window, contaminants_, scratch_);
   }
   for (std::size_t i = 0; i < pixels; ++i) total_[i] = target_[i] + contaminants_[i];
+  smear_window(window);
 }
 
 bool StarEstimatorBuilder::choose_weights(const FieldStar& star, const Rectangle& window) {
@@ -241,7 +243,7 @@ void StarEstimatorBuilder::fill_budget(const Rectangle& window, StarEstimator& e
     squares += square;
     photon_squares += fit.photon * photon_square;
     readout_squares += fit.readout * square;
-    const double light = fits_psf_ ? total_[i] : target_[i];
+    const double light = fits_psf_ ? target_[i] + contaminants_[i] : target_[i];
     static_prnu += (w * light) * (w * light);
   }
   budget.var_background = photon_squares * noise.background;

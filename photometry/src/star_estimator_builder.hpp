@@ -60,6 +60,9 @@ class StarEstimatorBuilder {
   const std::vector<double>& couple_weights(const Rectangle& window);
   /// Noise that the pixels of a column or row share (pattern_noise.cpp).
   void add_pattern_noise(const Rectangle& window, StarEstimator& estimator);
+  // Of levels that calibration subtracts (calibration_noise.cpp).
+  void smear_window(const Rectangle& window);
+  void add_calibration_noise(StarEstimator& estimator);
   // Of PSF weights (psf_estimator.cpp).
   void light_of_each(std::size_t star, const Rectangle& window, std::span<const std::size_t> neighbours);
   bool choose_psf_weights(const FieldStar& star, const Rectangle& window, const StarEstimator& estimator);
@@ -80,12 +83,14 @@ class StarEstimatorBuilder {
   // Of the target at hand, over its window; kept between targets to reuse their memory.
   std::vector<double> target_;
   std::vector<double> contaminants_;
-  std::vector<double> total_;
+  std::vector<double> total_;  // what makes photon noise: both, and what is smeared over them
   std::vector<double> weights_;
   std::vector<double> coupled_weights_;
   std::vector<double> fractions_;  // of PSF weights alone
   std::vector<double> scratch_;
   std::vector<std::size_t> found_;
+  std::vector<double> column_weights_;
+  std::vector<double> row_weights_;
   Annulus annulus_;
   LightChange change_x_, change_y_;
   std::vector<double> doubts_;  // of PSF weights: shape (doubts, pixels), e-; neighbours first

@@ -23,12 +23,12 @@ constexpr std::array<CauseStyle, kCauses> kCauseStyles{{{"photon noise", palette
                                                         {"sky, dark, background", palette::kBackground},
                                                         {"readout", palette::kReadout},
                                                         {"quantisation", palette::kQuantisation},
-                                                        {"jitter", palette::kJitter},
+                                                        {"jitter and drift", palette::kJitter},
                                                         {"jitter on unequal pixels", palette::kMuted}}};
 
 std::array<double, kCauses> cause_values(const NoiseByCause& c) {
-  return {c.photon, c.contaminants, std::hypot(c.background, c.background_estimate), c.readout, c.quantisation,
-          c.jitter, c.prnu_jitter};
+  return {c.photon,     c.contaminants, c.of_levels(), c.readout, c.quantisation, std::hypot(c.jitter, c.drift),
+          c.prnu_jitter};
 }
 
 std::vector<double> sorted_finite(std::span<const double> values) {

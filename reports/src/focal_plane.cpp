@@ -81,7 +81,7 @@ Figure figure_focal_plane(const FocalPlaneInput& input, const Mapped& quantity) 
   const std::string stem = figure.name;
   figure.data = {{stem + "_map.csv", map.text()}, {stem + "_points.csv", points.text()}};
   figure.commands = fmt::format(
-      "  set size ratio -1\n  unset grid\n  unset key\n  set border 15 linewidth 0.6\n"
+      "  set size ratio -1\n  unset grid\n  unset key\n  set border 15 linewidth 0.6\n  set style fill solid 1.0\n"
       "  set palette defined (0 \"#16264a\", 0.3 \"#2f6690\", 0.6 \"#81b1cc\", 0.85 \"#f2e8cf\", 1 \"#e09f3e\")\n"
       "  set cbrange [{:.8g}:{:.8g}]\n  set cblabel \"{}\"\n  set xrange [{}:{}]\n  set yrange [{}:{}]\n"
       "  set xlabel \"column, px\"\n  set ylabel \"row, px\"\n  set title \"{}\"\n"

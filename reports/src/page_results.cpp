@@ -86,8 +86,8 @@ std::string noise_section(const PageContent& content) {
     rows.push_back({fmt::format("{:.1f}–{:.1f}", bin.mag_low, bin.mag_high), fmt::format("{}", bin.stars),
                     html::number(bin.predicted_ppm, 4), html::number(bin.measured_ppm, 4),
                     html::number(bin.measured_within_ppm, 4), interval(bin.ratio, 3), interval(bin.ratio_within, 3),
-                    html::number(c.photon, 3), html::number(std::hypot(c.background, c.background_estimate), 3),
-                    html::number(c.readout, 3), html::number(c.jitter, 3)});
+                    html::number(c.photon, 3), html::number(c.of_levels(), 3), html::number(c.readout, 3),
+                    html::number(c.jitter, 3)});
   }
   const std::string ppm = "ppm";
   std::string body = html::table({{"magnitude", ""},
@@ -210,8 +210,8 @@ std::string budget_section(const PageContent& content) {
                     html::number(row.electrons, 4) + (row.saturated ? " <span class=\"flag\">saturated</span>" : ""),
                     fmt::format("{}", row.mask_pixels), html::fixed(row.enclosed_fraction, 3),
                     html::number(1e6 * row.nsr_exposure, 4), html::number(row.nsr_1h_ppm, 4), html::number(c.photon, 3),
-                    html::number(std::hypot(c.background, c.background_estimate), 3), html::number(c.readout, 3),
-                    html::number(c.quantisation, 3), html::number(c.jitter, 3), html::number(c.prnu_jitter, 3)});
+                    html::number(c.of_levels(), 3), html::number(c.readout, 3), html::number(c.quantisation, 3),
+                    html::number(c.jitter, 3), html::number(c.prnu_jitter, 3)});
   }
   const std::string ppm = "ppm";
   std::string body = html::table({{"magnitude", ""},

@@ -32,6 +32,10 @@ void add_causes(std::vector<Column<Row>>& columns, const std::string& what) {
        &NoiseByCause::background_estimate},
       {"jitter_ppm", "pointing jitter across the edge of the aperture, common to all cameras", &NoiseByCause::jitter},
       {"prnu_jitter_ppm", "pointing jitter over unequal pixels", &NoiseByCause::prnu_jitter},
+      {"smearing_ppm", "photon noise of what is smeared along the columns, and noise of its correction",
+       &NoiseByCause::smearing},
+      {"bias_ppm", "noise of a measured bias, and offsets of rows", &NoiseByCause::bias},
+      {"drift_ppm", "slow changes of gain and bias, common to all cameras", &NoiseByCause::drift},
   };
   for (const Part& part : parts) {
     columns.push_back({part.name, "ppm", what + part.meaning,

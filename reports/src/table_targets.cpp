@@ -120,11 +120,18 @@ void add_causes(std::vector<TargetColumn>& c) {
             &NoiseByCause::jitter));
   c.push_back(cause("prnu_jitter", "part of nsr_1h_ppm: pointing jitter moving the star over unequal pixels",
                     &NoiseByCause::prnu_jitter));
+  c.push_back(cause(
+      "smearing", "part of nsr_1h_ppm: photon noise of what is smeared along the columns, and noise of its correction",
+      &NoiseByCause::smearing));
+  c.push_back(cause("bias", "part of nsr_1h_ppm: noise of a measured bias, and offsets of rows", &NoiseByCause::bias));
+  c.push_back(
+      cause("drift", "part of nsr_1h_ppm: slow changes of gain and bias; common to all cameras", &NoiseByCause::drift));
 }
 
 void add_recovery(std::vector<TargetColumn>& c) {
   c.push_back(number("flux_in", "e-", "true electrons per exposure, all of the PSF", &TargetMetrics::flux_in));
-  c.push_back(number("flux_expected", "e-", "expected electrons per exposure in the aperture, target and neighbours",
+  c.push_back(number("flux_expected", "e-",
+                     "expected electrons per exposure in the aperture: target, neighbours, and what is smeared into it",
                      &TargetMetrics::flux_expected));
   c.push_back(number("flux_measured", "e-", "measured electrons per exposure in the aperture, mean over all exposures",
                      &TargetMetrics::flux_measured));
@@ -135,15 +142,19 @@ void add_recovery(std::vector<TargetColumn>& c) {
                      &TargetMetrics::mag_measured));
   c.push_back(number("mag_err", "mag", "its standard error, 1.0857 flux_err / flux_measured", &TargetMetrics::mag_err));
   c.push_back(number("delta_mag", "mag",
-                     "mag_measured - mag = delta_contamination + delta_aperture_loss + delta_residual",
+                     "mag_measured - mag = delta_contamination + delta_aperture_loss + delta_smearing + delta_residual",
                      &TargetMetrics::delta_mag));
   c.push_back(magnitude_cause("delta_contamination", "2.5 log10(1 - spr_tot): neighbours brighten",
                               &MagnitudeCauses::contamination));
   c.push_back(magnitude_cause("delta_aperture_loss", "-2.5 log10(enclosed_fraction): light outside the aperture",
                               &MagnitudeCauses::aperture_loss));
-  c.push_back(magnitude_cause("delta_residual", "what neither explains: saturation, background, calibration, noise",
+  c.push_back(magnitude_cause("delta_smearing", "light that is smeared along the columns and not corrected brightens",
+                              &MagnitudeCauses::smearing));
+  c.push_back(magnitude_cause("delta_residual",
+                              "what none of these explains: saturation, background, calibration, noise",
                               &MagnitudeCauses::residual));
-  c.push_back(number("delta_prnu_rms", "mag", "expected rms of delta_residual by fixed unequal pixels",
+  c.push_back(number("delta_prnu_rms", "mag",
+                     "expected rms of delta_residual by fixed unequal pixels and the flat field",
                      &TargetMetrics::prnu_magnitude));
   c.push_back(number("delta_neighbours_rms", "mag",
                      "rms of delta_residual if neighbours are 5 % other than believed and PSF weights took them out",

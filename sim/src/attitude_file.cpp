@@ -10,6 +10,7 @@
 #include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/sim/attitude.hpp"
+#include "named_columns.hpp"
 
 namespace astroid {
 
@@ -108,49 +109,21 @@ class FileAttitude final : public AttitudeModel {
   std::int64_t exposures_;
 };
 
-/// The four columns by name, or the first four where the file has no header.
-std::array<std::optional<std::size_t>, 4> find_columns(const CsvTable& table, std::vector<Problem>& problems) {
-  constexpr std::array<const char*, 4> kNames{"time_s", "yaw", "pitch", "roll"};
-  std::array<std::optional<std::size_t>, 4> columns;
-  for (std::size_t i = 0; i < kNames.size(); ++i) {
-    if (table.header().empty()) {
-      if (i < table.columns()) columns[i] = i;
-    } else {
-      columns[i] = table.column(kNames[i]);
-    }
-    if (!columns[i])
-      problems.push_back({.file = table.file(),
-                          .line = table.header_line(),
-                          .parameter = fmt::format("column {}", kNames[i]),
-                          .expected = "columns time_s, yaw, pitch, roll (s, arcsec)",
-                          .message = "the column is missing"});
-  }
-  return columns;
-}
-
 }  // namespace
 
 std::shared_ptr<const AttitudeModel> make_file_attitude(const std::string& path, const SimulationSettings& simulation) {
   const CsvTable table = read_csv(path);
   std::vector<Problem> problems;
-  const auto columns = find_columns(table, problems);
+  constexpr std::array<const char*, 4> kNames{"time_s", "yaw", "pitch", "roll"};
+  const auto columns = find_named_columns(table, kNames, "columns time_s, yaw, pitch, roll (s, arcsec)", problems);
   if (!problems.empty()) throw InputError(std::move(problems));
 
   std::vector<double> time;
   std::vector<Attitude> attitude;
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    std::array<double, 4> values{};
-    bool good = true;
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      const std::optional<double> value = table.number(row, *columns[i]);
-      if (!value || !std::isfinite(*value)) {
-        problems.push_back(table.problem(row, *columns[i], "is not a finite number", "a number"));
-        good = false;
-      } else {
-        values[i] = *value;
-      }
-    }
-    if (!good) continue;
+    const auto numbers = finite_numbers(table, row, columns, problems);
+    if (!numbers) continue;
+    const std::array<double, 4>& values = *numbers;
     if (!time.empty() && values[0] <= time.back()) {
       problems.push_back(
           table.problem(row, *columns[0], "time does not increase", fmt::format("more than {}", time.back())));

@@ -1,10 +1,16 @@
 #include "effect_table_builder.hpp"
+#include "effects/aberration_effect.hpp"
 #include "effects/adc.hpp"
+#include "effects/bad_pixels.hpp"
 #include "effects/bias.hpp"
 #include "effects/column_noise.hpp"
+#include "effects/cosmic_rays.hpp"
 #include "effects/dark_current.hpp"
+#include "effects/drift.hpp"
+#include "effects/flat_field.hpp"
 #include "effects/gain.hpp"
 #include "effects/inter_pixel_capacitance.hpp"
+#include "effects/intra_pixel_response.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/photon_noise.hpp"
@@ -13,26 +19,34 @@
 #include "effects/pixel_readout_noise.hpp"
 #include "effects/pixel_saturation.hpp"
 #include "effects/prnu.hpp"
+#include "effects/proper_motion_effect.hpp"
 #include "effects/ramp_fit.hpp"
 #include "effects/ramp_reads.hpp"
+#include "effects/repointing.hpp"
 #include "effects/reset_noise.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
+#include "effects/stray_light.hpp"
+#include "effects/sub_pixel_stars.hpp"
 #include "effects/telegraph_pixels.hpp"
+#include "effects/variable_stars.hpp"
+#include "effects/zodiacal_sky.hpp"
 
 namespace astroid {
 
 namespace {
 
 // From PhotonNoise to RampReads: once for every read.
-using CmosTable = EffectTable<JitterModelEffect, JitterFileEffect,                                      // Pointing
-                              Stars,                                                                    // Optics
-                              Sky,                                                                      // Sky
-                              Prnu, DarkCurrent, TelegraphPixels,                                       // PixelMean
-                              PhotonNoise, PixelSaturation,                                             // PixelSample
-                              GainEffect, InterPixelCapacitance, PixelGain, ResetNoise,                 // Readout
-                              PixelReadoutNoise, ColumnNoise, BiasEffect, PixelOffset, Adc, RampReads,  //
-                              RampFitEffect>;
+using CmosTable =
+    EffectTable<ProperMotionEffect,                                                                    // Catalogue
+                JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
+                Stars, SubPixelStars, VariableStars,                                                   // Optics
+                Sky, ZodiacalSky, StrayLight,                                                          // Sky
+                IntraPixelResponse,                                                                    // SubPixel
+                FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,                  // PixelMean
+                PhotonNoise, CosmicRays, PixelSaturation,                                              // PixelSample
+                GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise, BiasEffect,
+                PixelOffset, Adc, RampReads, RampFitEffect, BadPixelMap>;  // Readout
 
 }  // namespace
 

@@ -1,5 +1,6 @@
 #include "astroid/sim/moving_image.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "astroid/core/plane_kernels.hpp"
@@ -7,12 +8,22 @@
 namespace astroid {
 
 namespace {
-/// A cell is some megabytes; motions that go back and forth stay within a few.
+/// Motions that go back and forth stay within a few cells, and drift leaves them behind. So many are kept, or as many
+/// as fit into this memory, but always the two at a border.
 constexpr std::size_t kMostCells = 9;
+constexpr double kMostBytes = 512.0 * 1024.0 * 1024.0;
+
+std::size_t most_cells(const AttitudePolynomial& polynomial, std::size_t pixels) {
+  const std::size_t pixel = sizeof(double) + (polynomial.terms.size() - 1) * sizeof(float);
+  const double fit = kMostBytes / (static_cast<double>(pixel) * static_cast<double>(std::max<std::size_t>(1, pixels)));
+  return static_cast<std::size_t>(std::clamp(fit, 2.0, static_cast<double>(kMostCells)));
+}
 }  // namespace
 
-MovingImage::MovingImage(AttitudePolynomial polynomial)
-    : polynomial_(std::move(polynomial)), inverse_(coefficients_from_values(polynomial_)), cells_(kMostCells) {}
+MovingImage::MovingImage(AttitudePolynomial polynomial, std::size_t pixels)
+    : polynomial_(std::move(polynomial)),
+      inverse_(coefficients_from_values(polynomial_)),
+      cells_(most_cells(polynomial_, pixels)) {}
 
 MovingImageCell MovingImage::make_cell(const Attitude& centre, const RenderAt& render) const {
   const std::vector<Attitude> points = interpolation_points(polynomial_, centre);

@@ -9,9 +9,12 @@
 #include <span>
 #include <utility>
 
+#include "astroid/core/digitise.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/sim/effect_table.hpp"
 #include "plan_cost.hpp"
+#include "plan_motion.hpp"
+#include "reference_pixels.hpp"
 
 namespace astroid {
 
@@ -52,85 +55,38 @@ std::vector<StampTier> plan_stamps(const Scene& scene, double share, double& err
   return stamps;
 }
 
-/// Chooses how motion enters the image so that what is neglected stays below its share of the brightest target's
-/// tolerance.
-void plan_jitter(const Scene& scene, double share, bool moves, Plan& plan) {
-  const SceneSummary& s = scene.summary();
-  if (!moves) return;
-  const double flux = s.brightest_target_electrons;
-  if (!(flux > 0.0)) return;
-  // The mean position of an exposure is a random quantity: an error of it that is small against the exposure's own
-  // noise with all cameras, which it does not share, changes no statistics.
-  const double noise = det::sqrt(kVarianceTolerance * s.relative_variance_in_bin(flux) * s.exposures_per_bin);
-  const double first_order = s.psf.gradient * s.attitude_rms_px;
-  plan.knobs.attitude_steps = scene.attitude().steps_for(first_order > 0.0 ? noise / first_order : 1.0);
-
-  const double allowed = share * s.flux_tolerance(flux) / flux;  // relative
-  // Both axes: half the curvature times the variance of the motion, and what the next order leaves of it.
-  const double second_order = s.psf.curvature * s.attitude_rms_in_exposure_px * s.attitude_rms_in_exposure_px;
-  const double fourth_order = second_order * second_order;
-  if (second_order <= allowed) {
-    plan.knobs.jitter = JitterTreatment::kShift;
-    plan.jitter_error = flux * second_order;
-  } else if (fourth_order <= allowed) {
-    plan.knobs.jitter = JitterTreatment::kBroadened;
-    plan.jitter_error = flux * fourth_order;
-  } else {
-    plan.knobs.jitter = JitterTreatment::kSubSteps;
-    plan.jitter_error = flux * second_order / plan.knobs.attitude_steps;
-  }
-}
-
-/// Replaces the rendering of every star by a polynomial in the attitude where that is cheaper. Like every decision,
-/// this one looks at the whole detector, so windows and the full frame share it.
-void plan_polynomial(const Scene& scene, double share, Plan& plan) {
-  constexpr double kReach = 4.5;  // rms of the motion in one cell: others are seldom needed
-  constexpr std::size_t kMostTerms = 24;
-  constexpr double kMostBytes = 512.0 * 1024.0 * 1024.0;  // of a detector's maps
-  const SceneSummary& s = scene.summary();
-  const double flux = s.brightest_target_electrons;
-  if (plan.knobs.jitter == JitterTreatment::kNone || !(flux > 0.0)) return;
-  const AttitudeVariance variance = scene.attitude().variance();
-  AttitudePolynomial polynomial;
-  polynomial.scale = {kReach * det::sqrt(variance.yaw), kReach * det::sqrt(variance.pitch),
-                      kReach * det::sqrt(variance.roll)};
-  AttitudeReach reach;
-  for (const SceneStar& star : scene.stars()) {
-    const AttitudeJacobian& j = star.motion;
-    reach.yaw = std::max(reach.yaw, polynomial.scale.yaw * det::hypot(j.dx_dyaw, j.dy_dyaw));
-    reach.pitch = std::max(reach.pitch, polynomial.scale.pitch * det::hypot(j.dx_dpitch, j.dy_dpitch));
-    reach.roll = std::max(reach.roll, polynomial.scale.roll * det::hypot(j.dx_droll, j.dy_droll));
-  }
-  double left_out = 0.0;
-  const double allowed = share * s.flux_tolerance(flux) / flux;
-  polynomial.terms = choose_attitude_terms(s.psf.derivatives, reach, allowed, kMostTerms, left_out);
-  const auto pixels = static_cast<double>(scene.detector().size());
-  if (polynomial.terms.empty() || maps_bytes(polynomial.terms.size(), pixels) > kMostBytes ||
-      maps_seconds(polynomial.terms.size(), pixels) > full_frame_seconds(plan, scene))
-    return;
-  plan.knobs.jitter = JitterTreatment::kPolynomial;
-  plan.knobs.polynomial = std::move(polynomial);
-  plan.jitter_error = flux * left_out;
-}
-
-std::string describe_pixels(const Scene& scene, const Plan& plan, std::vector<std::string>& approximations) {
+std::string describe_delivered(const Scene& scene) {
   const CcdSettings& ccd = scene.mission().ccd;
-  const bool blooms = plan.runs("full-well") && ccd.blooming;
-  if (ccd.window > 0 || ccd.has_sub_field) {
-    if (blooms)
-      approximations.emplace_back(
-          "charge that blooms into the computed pixels from saturated stars outside them is left out; everything else "
-          "is "
-          "bit for bit what the full frame has");
-  }
   if (ccd.window > 0)
     return fmt::format("{} windows of {} x {} px ({} px in all) of the {} x {} px detector",
-                       scene.layout()->regions().size(), ccd.window, ccd.window, scene.layout()->size(), ccd.columns,
-                       ccd.rows);
+                       scene.layout()->exposed_regions().size(), ccd.window, ccd.window, scene.layout()->size(),
+                       ccd.columns, ccd.rows);
   if (ccd.has_sub_field)
     return fmt::format("sub-field of {} x {} px from ({}, {}) of the {} x {} px detector", ccd.sub_columns,
                        ccd.sub_rows, ccd.sub_x0, ccd.sub_y0, ccd.columns, ccd.rows);
   return fmt::format("full frame of {} x {} px", ccd.columns, ccd.rows);
+}
+
+std::string describe_pixels(const Scene& scene, const Plan& plan) {
+  std::string text = describe_delivered(scene);
+  if (plan.layout != scene.layout())
+    text +=
+        fmt::format("; {} px are computed, since charge and light of those outside reach them", plan.layout->size());
+  return text;
+}
+
+/// Rounding is noise of gain / sqrt(12) only where something blurs its steps (N25).
+void note_coarse_converter(const Scene& scene, std::vector<std::string>& approximations) {
+  constexpr double kLeastNoise = 0.5;  // ADU
+  const SceneSummary& s = scene.summary();
+  const double gain = scene.mission().ccd.gain.value();
+  const double quantisation = gain / kSqrt12;
+  const double noise = det::sqrt(std::max(0.0, s.pixel_noise_variance - quantisation * quantisation)) / gain;
+  if (noise >= kLeastNoise) return;
+  approximations.push_back(fmt::format(
+      "the noise of a dark pixel is {:.3g} ADU: below {} ADU the error of rounding depends on the signal and "
+      "is not the noise of gain / sqrt(12) that is predicted",
+      noise, kLeastNoise));
 }
 
 }  // namespace
@@ -169,12 +125,17 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
   const PixelLayout& delivered = *scene.layout();
   const std::span<const Rectangle> exposed = delivered.exposed_regions();
   std::vector<Rectangle> regions(exposed.begin(), exposed.end());
-  for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned)
-    if (planned->need.needed) planned->effect->support(scene, regions);
+  for (auto planned = plan.effects.rbegin(); planned != plan.effects.rend(); ++planned) {
+    if (!planned->need.needed) continue;
+    planned->effect->support(scene, regions);
+    // More than the whole detector is never needed.
+    std::size_t pixels = 0;
+    for (const Rectangle& region : regions) pixels += region.size();
+    if (pixels > scene.detector().size()) regions = {scene.detector()};
+  }
   if (std::ranges::equal(regions, exposed)) return scene.layout();
-  const std::span<const Rectangle> reference = delivered.reference_regions();
-  return std::make_shared<const PixelLayout>(std::move(regions),
-                                             std::vector<Rectangle>(reference.begin(), reference.end()));
+  const std::vector<Rectangle> reference = reference_regions(regions, scene.detector(), scene.mission().ccd.reference);
+  return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 
 std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
@@ -206,7 +167,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   bool moves = false;
   for (const auto& effect : effect_table(scene.mission().simulation.type)) {
     PlannedEffect planned{.effect = effect.get(), .need = effect->is_needed(summary)};
-    moves = moves || (planned.need.needed && effect->spec().level == EffectLevel::kPointing);
+    moves = moves || (planned.need.needed && (effect->spec().writes & plane_bit::kAttitude) != 0);
     plan.effects.push_back(std::move(planned));
   }
   plan.reads = scene.mission().simulation.type == DetectorType::kCmos ? scene.mission().cmos.reads : 1;
@@ -216,14 +177,19 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   const bool steady = plan.epoch_exposures == 0 || plan.epoch_exposures >= kFewExposures;
   plan.still = !moves && steady;
   plan.tolerance = summary.tightest_tolerance();
-  plan.renderer = scene.mission().psf.model == PsfModel::kGaussian ? "analytic" : "prf";
-  plan.psf_error = scene.psf().approximation_error() * summary.brightest_target_electrons;
+  const SubPixelRenderer* map = scene.sub_pixel_renderer();
+  plan.renderer = to_string(scene.renderer().renderer);
+  plan.renderer_reason = scene.renderer().why;
+  plan.renderer_error = map != nullptr ? map->predicted_error() : scene.psf().approximation_error();
+  plan.psf_error = plan.renderer_error * summary.brightest_target_electrons;
+  plan.knobs.variables = plan.runs("variable-stars");
   plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
-  plan_jitter(scene, kShares.jitter, moves, plan);
-  if (steady) plan_polynomial(scene, kShares.jitter, plan);
-  plan.pixels = describe_pixels(scene, plan, plan.approximations);
+  if (moves) plan_jitter(scene, kShares.jitter, plan);
+  if (moves && steady) plan_polynomial(scene, kShares.jitter, plan);
+  plan.pixels = describe_pixels(scene, plan);
+  note_coarse_converter(scene, plan.approximations);
   predict_times(plan, scene, costs);
-  plan.memory_bytes = predicted_memory(plan);
+  plan.memory_bytes = predicted_memory(plan, scene);
   return plan;
 }
 

@@ -18,9 +18,20 @@ struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
-constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},           {"prnu", 0.4},      {"dark-current", 0.4},
-                                     {"photon-noise", 2.55}, {"full-well", 0.3}, {"readout-noise", 1.45},
-                                     {"gain", 0.15},         {"bias", 0.1},      {"adc", 0.5}};
+constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},
+                                     {"zodiacal-sky", 0.6},
+                                     {"stray-light", 0.6},
+                                     {"prnu", 0.4},
+                                     {"dark-current", 0.4},
+                                     {"photon-noise", 2.55},
+                                     {"full-well", 0.3},
+                                     {"readout-noise", 1.45},
+                                     {"gain", 0.15},
+                                     {"bias", 0.1},
+                                     {"adc", 0.5},
+                                     {"flat-field", 0.4},
+                                     {"charge-injection", 0.05},
+                                     {"cosmic-rays", 0.5}};
 /// The same of a CMOS detector, a read (bench: BM_CmosExposure).
 constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 2.0},
                                     {"pixel-gain", 0.4},       {"reset-noise", 1.45},
@@ -41,7 +52,24 @@ struct StarCost {
 };
 constexpr StarCost kAnalytic{.star = 70.0, .row = 5.0, .pixel = 0.1, .broadening = 1.7};
 constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5.0};
+/// Of the sub-pixel renderer (bench: BM_SubPixel).
+constexpr double kMapNode = 11.0;    ///< ns a node of the map
+constexpr double kDeposit = 3500.0;  ///< ns a star, once for each tile that it reaches
+constexpr double kMapCell = 15.0;    ///< ns a cell of the light
 constexpr double kNanosecond = 1e-9;
+
+/// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are
+/// cheaper to move than columns, which are turned first.
+double moving_cost(std::string_view effect, const CcdSettings& ccd) {
+  constexpr double kShift = 0.9;   // range² times
+  constexpr double kSimple = 2.0;  // for each direction
+  constexpr double kTrap = 6.0;    // for each species
+  if (effect == "brighter-fatter") return kShift * ccd.brighter_fatter.range * ccd.brighter_fatter.range;
+  if (effect != "cti") return 0.0;
+  if (ccd.cti.model == CtiModel::kSimple)
+    return (ccd.cti.parallel > 0.0 ? kSimple : 0.0) + (ccd.cti.serial > 0.0 ? 2.0 * kSimple : 0.0);
+  return kTrap * static_cast<double>(ccd.cti.trap_density.size() + ccd.cti.register_density.size());
+}
 
 const StarCost& star_cost(const Plan& plan) {
   return plan.renderer == "analytic" ? kAnalytic : kPrf;
@@ -81,19 +109,45 @@ double stars_cost(const Plan& plan, const Scene& scene) {
   return nanoseconds * renderings(plan);
 }
 
+/// The sub-pixel renderer's time, for the tiles that touch some regions (none: all).
+double map_seconds(const Plan& plan, const Scene& scene, std::span<const Rectangle> regions) {
+  const SubPixelRenderer& map = *scene.sub_pixel_renderer();
+  double tiles = 0.0;
+  double pixels = 0.0;
+  for (const Rectangle& tile : map.tiles()) {
+    if (!regions.empty() &&
+        std::ranges::none_of(regions, [&](const Rectangle& region) { return !intersect(region, tile).empty(); }))
+      continue;
+    tiles += 1.0;
+    pixels += static_cast<double>(tile.size());
+  }
+  const double share = pixels / std::max(1.0, static_cast<double>(scene.detector().size()));
+  const double deposits = share * static_cast<double>(scene.summary().stars) * renderings(plan);
+  const double nodes = static_cast<double>(map.map_size());
+  const double cells = static_cast<double>(map.cells()) * map.cells();
+  return kNanosecond * (tiles * nodes * kMapNode + deposits * kDeposit + pixels * cells * kMapCell);
+}
+
 /// Whether the noiseless image is recalled rather than rendered.
 bool recalls(const Plan& plan) {
   return plan.still || plan.knobs.jitter == JitterTreatment::kPolynomial;
+}
+
+/// The effects that make the stars: one of them runs.
+bool renders_stars(const EffectSpec& spec) {
+  return spec.name == "stars" || spec.name == "sub-pixel-stars";
 }
 
 /// Of one effect that runs, on the machine that the constants were measured on.
 double nominal_seconds(const PlannedEffect& effect, const Plan& plan, const Scene& scene) {
   const EffectSpec& spec = effect.effect->spec();
   const auto pixels = static_cast<double>(plan.layout->size());
-  if (spec.name == "stars") {    // which makes the noiseless image, or stands for its recall
+  if (renders_stars(spec)) {     // which makes the noiseless image, or stands for its recall
     if (plan.still) return 0.0;  // the draws read it where it lies
     if (plan.knobs.jitter == JitterTreatment::kPolynomial)
       return maps_seconds(plan.knobs.polynomial.terms.size(), pixels);
+    if (scene.sub_pixel_renderer() != nullptr)
+      return kNanosecond * kClear * pixels + map_seconds(plan, scene, plan.layout->exposed_regions());
     return kNanosecond * (kClear * pixels + stars_cost(plan, scene));
   }
   if (recalls(plan) && spec.role != ImageRole::kVaryingLight && spec.level <= EffectLevel::kPixelMean) return 0.0;
@@ -102,12 +156,13 @@ double nominal_seconds(const PlannedEffect& effect, const Plan& plan, const Scen
        {std::span<const PixelCost>(kPixelCosts), std::span<const PixelCost>(kReadCosts)})
     for (const PixelCost& cost : costs)
       if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * reads;
-  return 0.0;
+  return kNanosecond * moving_cost(spec.name, scene.mission().ccd) * pixels;
 }
 
 }  // namespace
 
 double full_frame_seconds(const Plan& plan, const Scene& scene) {
+  if (scene.sub_pixel_renderer() != nullptr) return map_seconds(plan, scene, {});
   const StarCost& cost = star_cost(plan);
   const double strip_rows = std::max(1.0, static_cast<double>(kStripPixels) / scene.detector().nx);
   double nanoseconds = 0.0;
@@ -130,7 +185,7 @@ double maps_bytes(std::size_t terms, double pixels) {
 
 std::string cost_part(const PlannedEffect& effect, const Plan& plan) {
   const EffectSpec& spec = effect.effect->spec();
-  if (spec.name != "stars") return std::string(spec.name);
+  if (!renders_stars(spec)) return std::string(spec.name);
   return plan.knobs.jitter == JitterTreatment::kPolynomial ? "maps" : "stars, " + plan.renderer;
 }
 
@@ -144,13 +199,17 @@ void predict_times(Plan& plan, const Scene& scene, const CostFactors& costs) {
   }
 }
 
-double predicted_memory(const Plan& plan) {
+double predicted_memory(const Plan& plan, const Scene& scene) {
   double bytes_per_pixel = sizeof(float) + sizeof(std::uint8_t);  // the frame
-  if (plan.runs("full-well")) bytes_per_pixel += sizeof(double);  // drawn electrons, column by column
-  if (plan.reads > 1 && plan.runs("inter-pixel-capacitance"))     // planes and ramps of all pixels from read to read
+  // Drawn electrons, where charge moves from pixel to pixel.
+  if (plan.reads > 1 && plan.runs("inter-pixel-capacitance"))  // planes and ramps of all pixels from read to read
     bytes_per_pixel += 5.0 * sizeof(double) + sizeof(float) + 2.0 * sizeof(std::uint8_t);
+  if (plan.runs("full-well") || plan.runs("brighter-fatter") || plan.runs("cti")) bytes_per_pixel += sizeof(double);
   constexpr double kStripPlanes = 3.0;  // expected and drawn electrons, ADU
-  return bytes_per_pixel * static_cast<double>(plan.layout->size()) +
+  const SubPixelRenderer* map = scene.sub_pixel_renderer();
+  const bool whole = map != nullptr && !recalls(plan);  // expected electrons, tile by tile
+  if (whole) bytes_per_pixel += sizeof(double);
+  return (whole ? map->workspace_bytes() : 0.0) + bytes_per_pixel * static_cast<double>(plan.layout->size()) +
          kStripPlanes * sizeof(double) * static_cast<double>(kStripPixels);
 }
 

@@ -17,6 +17,6 @@ double maps_seconds(std::size_t terms, double pixels);
 double maps_bytes(std::size_t terms, double pixels);
 
 /// Predicted memory of one worker's state, bytes.
-double predicted_memory(const Plan& plan);
+double predicted_memory(const Plan& plan, const Scene& scene);
 
 }  // namespace astroid

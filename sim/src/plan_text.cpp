@@ -23,7 +23,10 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   std::string out = "What will be computed, and why\n\n";
   out += fmt::format("Pixels     {}\n", plan.pixels);
   out += fmt::format("Stars      {} on or next to the detector, {} of them targets\n", s.stars, scene.targets().size());
-  out += fmt::format("PSF        {} (renderer {})\n", scene.psf().description(), plan.renderer);
+  out +=
+      fmt::format("PSF        {} (renderer {}: {})\n", scene.psf().description(), plan.renderer, plan.renderer_reason);
+  if (const SubPixelRenderer* map = scene.sub_pixel_renderer())
+    out += fmt::format("Map        {}; {:.3g} MiB per worker\n", map->description(), map->workspace_bytes() / kMebi);
   out += fmt::format("Attitude   {}\n", scene.attitude().description());
   out += fmt::format(
       "Accuracy   {:.3g} ppm asked for: every flux may be off by the larger of that and 1 % of its own noise in {:.0f} "
@@ -52,7 +55,7 @@ std::string to_text(const Plan& plan, const Scene& scene) {
       "  stamps    half-width {:.2f} px (brightest) to {:.2f} px (faintest): at most {:.2g} e- of any target\n",
       plan.knobs.stamps.empty() ? 0.0 : plan.knobs.stamps.front().half_width,
       plan.knobs.stamps.empty() ? 0.0 : plan.knobs.stamps.back().half_width, plan.stamp_error);
-  out += fmt::format("  PSF       {:.2g} ppm\n", 1e6 * scene.psf().approximation_error());
+  out += fmt::format("  PSF       {:.2g} ppm\n", 1e6 * plan.renderer_error);
   if (plan.knobs.jitter == JitterTreatment::kNone) {
     out += "  jitter    none: the noiseless image is computed once\n";
   } else if (plan.knobs.jitter == JitterTreatment::kPolynomial) {
@@ -80,6 +83,14 @@ std::string to_json(const Plan& plan, const Scene& scene) {
   nlohmann::ordered_json json;
   json["pixels"] = plan.pixels;
   json["renderer"] = plan.renderer;
+  json["renderer_reason"] = plan.renderer_reason;
+  json["renderer_error_ppm"] = 1e6 * plan.renderer_error;
+  if (const SubPixelRenderer* map = scene.sub_pixel_renderer())
+    json["map"] = {{"sub_pixels", map->sub_pixels()},
+                   {"cells", map->cells()},
+                   {"tiles", map->tiles().size()},
+                   {"band_cycles_per_px", map->band()},
+                   {"bytes_per_worker", map->workspace_bytes()}};
   json["psf"] = scene.psf().description();
   json["attitude"] = scene.attitude().description();
   json["stars"] = s.stars;

@@ -6,13 +6,22 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <unordered_map>
+#include <unordered_set>
 #include <utility>
 
+#include "astroid/catalogues/proper_motion.hpp"
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/detector_noise.hpp"
+#include "astroid/core/digitise.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/sphere.hpp"
+#include "astroid/sim/smearing.hpp"
+#include "effects/drift.hpp"
 #include "effects/jitter_model.hpp"
+#include "effects/repointing.hpp"
 #include "psf_sensitivity.hpp"
 #include "reference_pixels.hpp"
 
@@ -24,18 +33,23 @@ namespace {
 constexpr double kNegligibleShare = 1e-12;
 constexpr double kPsfShare = 0.4;  ///< of the accuracy, see AccuracyShares
 
-std::shared_ptr<const AttitudeModel> make_attitude(const Mission& mission) {
+/// Attitude is the spacecraft's: camera and detector stay out of the address, so cameras share it.
+RandomStream attitude_stream(const Mission& mission, StreamId effect) {
+  return make_stream(mission.simulation.seed, effect, 0, 0);
+}
+
+std::shared_ptr<const AttitudeModel> make_jitter(const Mission& mission) {
+  const JitterSettings& jitter = mission.satellite.jitter;
   switch (mission.satellite.jitter.model) {
     case JitterModel::kNone:
       return make_still_attitude();
     case JitterModel::kRedNoise:
-      // Attitude is the spacecraft's: camera and detector stay out of the address, so cameras share it.
-      return make_red_noise_attitude(mission.satellite.jitter, mission.simulation,
-                                     make_stream(mission.simulation.seed, JitterModelEffect::kSpec.id, 0, 0));
+      return make_red_noise_attitude(jitter, mission.simulation, attitude_stream(mission, JitterModelEffect::kSpec.id));
     case JitterModel::kFile:
-      return make_file_attitude(mission.satellite.jitter.file, mission.simulation);
+      return make_file_attitude(jitter.file, mission.simulation);
     case JitterModel::kSpectrum:
-      break;  // no configuration says so yet
+      return make_spectrum_attitude(read_jitter_spectrum(jitter.file), jitter.file, mission.simulation,
+                                    attitude_stream(mission, JitterModelEffect::kSpec.id));
   }
   throw BugError("unknown jitter model");
 }
@@ -44,6 +58,36 @@ std::shared_ptr<const AttitudeModel> make_attitude(const Mission& mission) {
 double rms_px(const AttitudeJacobian& jacobian, const AttitudeVariance& variance) {
   const MotionCovariance motion = motion_covariance(jacobian, variance);
   return det::sqrt(std::max(motion.sxx, motion.syy));
+}
+
+/// Displacement of a star by at most so much about each axis.
+double farthest_px(const AttitudeJacobian& j, const Attitude& attitude) {
+  return det::hypot(std::fabs(j.dx_dyaw) * attitude.yaw + std::fabs(j.dx_dpitch) * attitude.pitch +
+                        std::fabs(j.dx_droll) * attitude.roll,
+                    std::fabs(j.dy_dyaw) * attitude.yaw + std::fabs(j.dy_dpitch) * attitude.pitch +
+                        std::fabs(j.dy_droll) * attitude.roll);
+}
+
+/// The fastest that aberration moves a star in the year.
+double aberration_px_per_second(const AberrationJacobian& j) {
+  constexpr double kLargestAcceleration = 2.1e-11;  // of the Earth's velocity in units of c, per second, at perihelion
+  const auto length = [](const Velocity& v) { return det::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]); };
+  return kLargestAcceleration * det::hypot(length(j.x), length(j.y));
+}
+
+/// Velocities of the spacecraft relative to the start, over the run.
+std::vector<Velocity> velocities(const SimulationSettings& simulation) {
+  constexpr double kSecondsPerDay = 86400.0;
+  constexpr int kPieces = 32;
+  const double days = static_cast<double>(simulation.exposures) * simulation.cycle.value() / kSecondsPerDay;
+  const Velocity start = spacecraft_velocity(simulation.start_mjd);
+  std::vector<Velocity> all;
+  for (int i = 1; i <= kPieces; ++i) {
+    Velocity v = spacecraft_velocity(simulation.start_mjd + days * i / kPieces);
+    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= start[k];
+    all.push_back(v);
+  }
+  return all;
 }
 
 Rectangle grown(const Rectangle& r, int margin) {
@@ -107,13 +151,28 @@ std::vector<std::size_t> full_frame_targets(const Scene& scene) {
 }
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
-    : mission_(mission), psf_(make_psf(mission)), attitude_(make_attitude(mission)) {
+    : mission_(mission),
+      renderer_(choose_renderer(mission)),
+      optical_psf_(make_psf(mission)),
+      psf_(make_recorded_psf(mission, optical_psf_)),
+      jitter_(make_jitter(mission)) {
   const CcdSettings& ccd = mission_.ccd;
-  projection_.emplace(CameraPointing{.axis = {mission_.satellite.ra.value(), mission_.satellite.dec.value()},
-                                     .roll = mission_.satellite.roll,
-                                     .scale = ccd.pixel_scale,
-                                     .axis_pixel = {ccd.axis_x, ccd.axis_y},
-                                     .projection = ccd.projection});
+  const SatelliteSettings& satellite = mission_.satellite;
+  drift_ = thermo_elastic_drift(satellite, mission_.simulation, attitude_stream(mission_, DriftEffect::kSpec.id));
+  repointing_ = repointing_error(satellite, mission_.simulation, attitude_stream(mission_, RepointingEffect::kSpec.id));
+  trend_ = drift_ + repointing_;
+  attitude_ = make_drifting_attitude(jitter_, trend_, mission_.simulation);
+  const CameraPointing pointing{.axis = {satellite.ra.value(), satellite.dec.value()},
+                                .roll = satellite.roll,
+                                .scale = ccd.pixel_scale,
+                                .axis_pixel = {ccd.axis_x, ccd.axis_y},
+                                .projection = ccd.projection};
+  projection_.emplace(pointing);
+
+  if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
+  constexpr double kSecondsPerDay = 86400.0;
+  summary_.epoch =
+      julian_year(mission_.simulation.start_mjd + middle_of_run(mission_.simulation).value() / kSecondsPerDay);
 
   const double exposure = mission_.simulation.exposure_time.value();
   const AttitudeVariance jitter = attitude_->variance();
@@ -125,12 +184,20 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     SceneStar s;
     s.id = star.id;
     if (catalogue.positions == PositionKind::kSky) {
-      const std::optional<PixelPosition> position = projection_->to_pixel(star.sky);
+      const bool moves = mission_.field.proper_motion && (star.pm_ra != 0.0 || star.pm_dec != 0.0);
+      const double epoch = star.epoch > 0.0 ? star.epoch : mission_.field.catalogue_epoch;
+      s.sky = moves ? moved(star.sky, {star.pm_ra, star.pm_dec}, summary_.epoch - epoch) : star.sky;
+      if (moves) {
+        ++summary_.moved_stars;
+        constexpr double kArcsecPerDegree = 3600.0;
+        summary_.proper_motion_px = std::max(summary_.proper_motion_px, angular_separation(s.sky, star.sky).value() *
+                                                                            kArcsecPerDegree / ccd.pixel_scale.value());
+      }
+      const std::optional<PixelPosition> position = projection_->to_pixel(s.sky);
       if (!position) {
         ++not_projectable;
         continue;
       }
-      s.sky = star.sky;
       s.position = *position;
     } else {
       s.sky = {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
@@ -155,8 +222,10 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     }
     const SkyPosition direction = catalogue.positions == PositionKind::kSky ? s.sky : projection_->to_sky(s.position);
     s.motion = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
+    if (satellite.aberration) s.aberration = aberration_jacobian(direction, pointing.axis, pointing, s.motion);
     stars_.push_back(std::move(s));
   }
+  read_variable_stars(catalogue);
   if (not_projectable > 0)
     notes_.push_back(fmt::format("{} stars lie behind the horizon of the projection", not_projectable));
   if (outside > 0) notes_.push_back(fmt::format("{} stars of the catalogue fall outside the detector", outside));
@@ -191,19 +260,35 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.accuracy = 1e-6 * mission_.simulation.accuracy.value();
   s.cameras = mission_.telescope.cameras;
   s.exposures_per_bin = std::max(1.0, std::floor(mission_.analysis.bin / mission_.simulation.cycle));
-  s.background = (mission_.field.sky_background + ccd.dark_current).value() * exposure;
+  const ElectronsPerSecond from_sky = mean_background_rate(mission_);
+  s.sky = (from_sky - mission_.field.stray_light.level).value() * exposure;
+  s.background = (from_sky + ccd.dark_current).value() * exposure;
   s.pixel_noise_variance = expected_pixel_noise(mission_).variance();
   const double radius = mission_.photometry.aperture_radius.value();
   const double side = mission_.photometry.mask_window;
   s.aperture_pixels = mission_.photometry.method == PhotometryMethod::kAperture ? kPi * radius * radius : side * side;
-  const double in_exposure_yaw = std::max(0.0, jitter.yaw - attitude_->variance_of_mean(1).yaw);
-  const double in_exposure_pitch = std::max(0.0, jitter.pitch - attitude_->variance_of_mean(1).pitch);
-  const double in_exposure_roll = std::max(0.0, jitter.roll - attitude_->variance_of_mean(1).roll);
+  const AttitudeVariance kept = attitude_->variance_of_mean(1);
+  const auto in_exposure = [exposure](double all, double mean, double rate) {
+    // A straight line of length rate x exposure has this variance, whatever else moves.
+    return std::max(0.0, all - mean) + rate * rate * exposure * exposure / 12.0;
+  };
+  const Attitude& fastest = trend_.fastest();
+  const AttitudeVariance within{in_exposure(jitter.yaw, kept.yaw, fastest.yaw),
+                                in_exposure(jitter.pitch, kept.pitch, fastest.pitch),
+                                in_exposure(jitter.roll, kept.roll, fastest.roll)};
+  const std::vector<Velocity> velocity =
+      satellite.aberration ? velocities(mission_.simulation) : std::vector<Velocity>{};
   s.faintest_target_electrons = std::numeric_limits<double>::infinity();
   for (const SceneStar& star : stars_) {
     s.attitude_rms_px = std::max(s.attitude_rms_px, rms_px(star.motion, jitter));
-    s.attitude_rms_in_exposure_px = std::max(
-        s.attitude_rms_in_exposure_px, rms_px(star.motion, {in_exposure_yaw, in_exposure_pitch, in_exposure_roll}));
+    s.attitude_rms_in_exposure_px = std::max(s.attitude_rms_in_exposure_px, rms_px(star.motion, within));
+    s.drift_px = std::max(s.drift_px, farthest_px(star.motion, drift_.farthest()));
+    s.repointing_px = std::max(s.repointing_px, farthest_px(star.motion, repointing_.farthest()));
+    for (const Velocity& v : velocity) {
+      const PixelShift shift = star.aberration.displacement(v);
+      s.aberration_px = std::max(s.aberration_px, det::hypot(shift.dx, shift.dy));
+    }
+    s.aberration_px_per_second = std::max(s.aberration_px_per_second, aberration_px_per_second(star.aberration));
     if (star.electrons > s.brightest_electrons) {
       s.brightest_electrons = star.electrons;
       s.brightest_id = star.id;
@@ -221,6 +306,75 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
   s.stars = stars_.size();
   s.peak_pixel_bound = peak_pixel_bound(stars_, s.psf.peak_fraction) + s.background;
+  if (ccd.charge_injection.every_rows > 0) s.peak_pixel_bound += ccd.charge_injection.level.value();
+  if (ccd.smearing.model != SmearingModel::kNone) s.brightest_column = brightest_column_bound(*this);
+  if (renderer_.renderer == Renderer::kSubPixel) {
+    // What a bright star may leave on a faint target, as with stamps.
+    constexpr double kNeighbours = 4.0;
+    constexpr double kRounding = 1e-13;
+    const double brightest = kNeighbours * std::max(s.brightest_electrons, 1.0);
+    sub_pixel_renderer_ = make_sub_pixel_renderer(mission_, kPsfShare * s.accuracy,
+                                                  std::max(kRounding, kPsfShare * s.tightest_tolerance() / brightest));
+  }
+}
+
+void Scene::read_variable_stars(const StarCatalogue& catalogue) {
+  if (mission_.field.variables.empty()) return;
+  variables_ = read_variables(mission_.field.variables, 2.0 * middle_of_run(mission_.simulation).value());
+  std::unordered_map<std::string, int> number;
+  for (std::size_t i = 0; i < variables_.size(); ++i) number[variables_[i].id] = static_cast<int>(i);
+  std::unordered_set<std::string> known;
+  for (const CatalogueStar& star : catalogue.stars)
+    if (number.contains(star.id)) known.insert(star.id);
+  std::vector<Problem> problems;
+  for (const VariableStar& variable : variables_)
+    if (!known.contains(variable.id))
+      problems.push_back({.file = mission_.field.variables,
+                          .line = variable.line,
+                          .parameter = "column id",
+                          .value = variable.id,
+                          .expected = fmt::format("an id of {}", catalogue.source),
+                          .message = "is not a star of the catalogue"});
+  if (!problems.empty()) throw InputError(std::move(problems));
+  for (SceneStar& star : stars_) {
+    const auto found = number.find(star.id);
+    if (found == number.end()) continue;
+    star.variability = found->second;
+    ++summary_.variable_stars;
+    const double change = variables_[static_cast<std::size_t>(found->second)].variability.largest_change();
+    summary_.largest_variation = std::max(summary_.largest_variation, change * star.electrons);
+  }
+  if (summary_.variable_stars < variables_.size())
+    notes_.push_back(
+        fmt::format("{} variable stars are not on the detector", variables_.size() - summary_.variable_stars));
+}
+
+void Scene::find_sky() {
+  rate_of_s10_ = rate_of_one_s10(mission_);
+  const Rectangle d = detector();
+  const PixelPosition places[] = {
+      {d.x0 - 0.5, d.y0 - 0.5}, {d.x1() - 0.5, d.y0 - 0.5}, {d.x0 - 0.5, d.y1() - 0.5}, {d.x1() - 0.5, d.y1() - 0.5}};
+  for (std::size_t i = 0; i < corners_.size(); ++i) {
+    corners_[i] = projection_->to_sky(places[i]);
+    if (!std::isfinite(corners_[i].ra)) corners_[i] = projection_->axis();  // beyond the projection
+  }
+  // The whole run must be far enough from the Sun, which moves by 5 deg in this time and comes again after a year.
+  constexpr double kStep = 5.0 * 86400.0;
+  constexpr double kYear = 366.0 * 86400.0;
+  const double end = std::min(2.0 * middle_of_run(mission_.simulation).value(), kYear);
+  for (double time = 0.0; time < end + kStep; time += kStep)
+    for (std::size_t i = 0; i < corners_.size(); ++i) (void)sky_at_corner(i, Seconds(std::min(time, end)));
+}
+
+ElectronsPerSecond Scene::sky_at_corner(std::size_t corner, Seconds time) const {
+  return sky_rate(mission_, rate_of_s10_, corners_[corner], time);
+}
+
+std::shared_ptr<const AttitudeModel> Scene::attitude(const AttitudeParts& parts) const {
+  const AttitudeTrend drift = parts.drift ? drift_ : AttitudeTrend();
+  const AttitudeTrend repointing = parts.repointing ? repointing_ : AttitudeTrend();
+  return make_drifting_attitude(parts.jitter ? jitter_ : make_still_attitude(), drift + repointing,
+                                mission_.simulation);
 }
 
 Seconds Scene::mid_time(std::int64_t exposure) const {

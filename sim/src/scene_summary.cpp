@@ -24,6 +24,10 @@ double SceneSummary::flux_tolerance(double target_electrons) const {
                   kNoiseShare * target_electrons * det::sqrt(relative_variance_in_bin(target_electrons)));
 }
 
+double SceneSummary::flux_change(double displacement) const {
+  return std::min(1.0, displacement * (psf.gradient + 0.5 * displacement * psf.curvature));
+}
+
 double SceneSummary::tightest_tolerance() const {
   return flux_tolerance(faintest_target_electrons);
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <span>
 #include <utility>
 
 #include "astroid/core/detector_noise.hpp"
@@ -60,7 +61,11 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
   const JitterTreatment treatment = plan.knobs.jitter;
   if (treatment == JitterTreatment::kNone) return series;
   series->steps = plan.knobs.attitude_steps;
-  scene.attitude().for_each_exposure(
+  // What the plan leaves out is left out here too.
+  const AttitudeParts parts{.jitter = plan.runs("jitter-model") || plan.runs("jitter-file"),
+                            .drift = plan.runs("drift"),
+                            .repointing = plan.runs("re-pointing")};
+  scene.attitude(parts)->for_each_exposure(
       scene.mission().simulation.exposures, series->steps, [&](std::span<const Attitude> exposure) {
         series->moments.push_back(attitude_moments(exposure));
         for (const Attitude& a : exposure)
@@ -103,7 +108,7 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
     still_->get(0, [this] { return render({}, conditions_of(*plan_, *scene_, 0)); });
   }
   if (plan_->knobs.jitter == JitterTreatment::kPolynomial)
-    moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial);
+    moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial, plan_->layout->size());
   stages_ = make_stages(source(), false);
 }
 
@@ -206,6 +211,7 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.still = false;
   state.lost_electrons = 0.0;
   state.clipped_pixels = 0;
+  state.ringing = {};
   std::ranges::fill(state.computed().flags.pixels(), std::uint8_t{0});
   fill_header(*scene_, camera_.camera, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);
@@ -382,14 +388,25 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
 void Simulator::deliver(ExposureState& state) const {
   if (state.more == nullptr) return;
   const PixelLayout& delivered = *scene_->layout();
+  const PixelLayout& computed = *plan_->layout;
   for (std::size_t r = 0; r < delivered.regions().size(); ++r) {
     const Rectangle& region = delivered.regions()[r];
-    const auto first = static_cast<std::size_t>(region.x0 - plan_->layout->regions()[r].x0);
+    // Exposed regions keep their order, unless all of the detector is computed; reference regions are joined anew.
+    const std::span<const Rectangle> exposed = computed.exposed_regions();
+    const bool whole = exposed.size() == 1 && exposed.front() == scene_->detector();
+    std::size_t from = whole ? 0 : r;
+    if (r >= delivered.exposed_regions().size()) {
+      const auto holds = [&](const Rectangle& area) { return intersect(area, region) == region; };
+      const auto found = std::ranges::find_if(computed.reference_regions(), holds);
+      ASTROID_CHECK_EQ(found != computed.reference_regions().end(), true);
+      from = exposed.size() + static_cast<std::size_t>(found - computed.reference_regions().begin());
+    }
+    const auto first = static_cast<std::size_t>(region.x0 - computed.regions()[from].x0);
     for (int y = region.y0; y < region.y1(); ++y) {
       const auto width = static_cast<std::size_t>(region.nx);
-      std::ranges::copy(state.more->pixels.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->pixels.view(from).row(y).subspan(first, width),
                         state.frame.pixels.view(r).row(y).begin());
-      std::ranges::copy(state.more->flags.view(r).row(y).subspan(first, width),
+      std::ranges::copy(state.more->flags.view(from).row(y).subspan(first, width),
                         state.frame.flags.view(r).row(y).begin());
     }
   }

@@ -19,15 +19,21 @@ int cell(double v) {
 }
 
 /// How far a star gets from its nominal place, px.
-double excursion(const AttitudeJacobian& j, const Attitude& farthest) {
-  return det::hypot(j.dx_dyaw, j.dy_dyaw) * farthest.yaw + det::hypot(j.dx_dpitch, j.dy_dpitch) * farthest.pitch +
-         det::hypot(j.dx_droll, j.dy_droll) * farthest.roll;
+double excursion(const SceneStar& star, const Attitude& farthest) {
+  constexpr double kFastest = 2.1e-4;  // change of the spacecraft's velocity in half a year, in units of c
+  const AttitudeJacobian& j = star.motion;
+  const AberrationJacobian& a = star.aberration;
+  const double aberration =
+      det::hypot(det::hypot(det::hypot(a.x[0], a.x[1]), a.x[2]), det::hypot(det::hypot(a.y[0], a.y[1]), a.y[2]));
+  return kFastest * aberration + det::hypot(j.dx_dyaw, j.dy_dyaw) * farthest.yaw +
+         det::hypot(j.dx_dpitch, j.dy_dpitch) * farthest.pitch + det::hypot(j.dx_droll, j.dy_droll) * farthest.roll;
 }
 
 }  // namespace
 
 std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const PlanKnobs& knobs,
-                                                  std::span<const Rectangle> areas, const Attitude& farthest) {
+                                                  std::span<const Rectangle> areas, const Attitude& farthest,
+                                                  StarChoice choice) {
   constexpr double kRounding = 1.0;  // px: of the stamp's edges
   std::map<std::pair<int, int>, std::vector<std::uint32_t>> cells;
   std::vector<double> reach(scene.stars().size());
@@ -35,7 +41,9 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
   for (std::size_t i = 0; i < reach.size(); ++i) {
     const SceneStar& star = scene.stars()[i];
     if (!(star.electrons > 0.0)) continue;
-    reach[i] = knobs.stamp_half_width(star.electrons) + excursion(star.motion, farthest) + kRounding;
+    const bool constant = star.variability < 0;
+    if (choice != StarChoice::kAll && constant != (choice == StarChoice::kConstant)) continue;
+    reach[i] = knobs.stamp_half_width(star.electrons) + excursion(star, farthest) + kRounding;
     widest = std::max(widest, reach[i]);
     cells[{cell(star.position.x), cell(star.position.y)}].push_back(static_cast<std::uint32_t>(i));
   }
@@ -56,7 +64,8 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     list.reserve(found.size());
     for (const std::uint32_t i : found) {
       const SceneStar& star = scene.stars()[i];
-      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion});
+      list.push_back({star.position, star.electrons, knobs.stamp_half_width(star.electrons), star.motion,
+                      star.aberration, star.variability});
     }
   }
   return lists;

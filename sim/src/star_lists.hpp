@@ -1,6 +1,7 @@
 // Which stars can reach which pixels.
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -10,10 +11,13 @@
 
 namespace astroid {
 
+enum class StarChoice : std::uint8_t { kAll, kConstant, kVariable };
+
 /// For each area the stars whose stamps can touch it, in catalogue order.
 /// @param farthest  the largest attitude of each axis, arcsec, in absolute value.
 /// @complexity O(areas × stars nearby), through a grid of cells.
 std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const PlanKnobs& knobs,
-                                                  std::span<const Rectangle> areas, const Attitude& farthest);
+                                                  std::span<const Rectangle> areas, const Attitude& farthest,
+                                                  StarChoice choice = StarChoice::kAll);
 
 }  // namespace astroid

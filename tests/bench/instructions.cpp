@@ -118,10 +118,19 @@ bench::PlannedScene scene_of(Mission mission, const StarCatalogue& stars) {
   return bench::plan_scene(mission, stars);
 }
 
+/// The same plan in which effects that are off do not exist: what they cost is the difference (instructions.py).
+bench::PlannedScene without_what_is_off(const bench::PlannedScene& planned) {
+  auto plan = std::make_shared<Plan>(*planned.plan);
+  std::erase_if(plan->effects, [](const PlannedEffect& effect) { return !effect.need.needed; });
+  return {planned.scene, plan};
+}
+
 void measure_sparse_scenes() {
   const StarCatalogue stars = bench::reference_stars(kSceneStars, kSide);
   const Mission reference = bench::reference_mission(kSide, bench::Detector::kReference);
-  measure_exposures("reference exposure", "exposure", 1, scene_of(reference, stars));
+  const bench::PlannedScene usual = scene_of(reference, stars);
+  measure_exposures("reference exposure", "exposure", 1, usual);
+  measure_exposures("reference exposure, no effect but those on", "exposure", 1, without_what_is_off(usual));
   Mission everything = bench::reference_mission(kSide, bench::Detector::kEverything);
   everything.ccd.full_well = Electrons(100000.0);  // so that some of these few stars bloom
   const bench::PlannedScene all = scene_of(everything, stars);

@@ -20,6 +20,8 @@ import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent.parent
 RECORD = ROOT / "reports" / "bench" / "instructions.json"
+OFF_EFFECTS = ("reference exposure", "reference exposure, no effect but those on")
+ALLOWED_OFF = 0.01  # of an exposure, for all effects that are switched off together
 ALLOWED = 0.05  # a compiler's whims on unrelated changes stay below it; a lost vectorisation is far above
 SKIP = 77
 HOW_TO_RECORD = "cmake --build --preset ci --target record-instructions"
@@ -81,6 +83,14 @@ def slower(recorded, measured):
                 yield f"{name}: {now:g} instructions a {measured[name]['unit']}, recorded {before:g}: {100 * (now / before - 1):+.1f} %"
 
 
+def costly_when_off(measured):
+    """Yields a sentence if effects that are switched off cost more than they may."""
+    usual, pruned = (measured[name]["instructions"] for name in OFF_EFFECTS)
+    share = usual / pruned - 1
+    if share > ALLOWED_OFF:
+        yield f"effects that are off cost {100 * share:.2f} % of an exposure, not at most {100 * ALLOWED_OFF:g} %"
+
+
 def print_table(recorded, measured):
     print(f"{'kernel':<46} {'recorded':>12} {'measured':>12}  per")
     for name, kernel in measured.items():
@@ -115,11 +125,13 @@ def main():
         record(measured)
         return 0
     offences = list(slower(recorded["kernels"], measured["kernels"]))
+    expensive = list(costly_when_off(measured["kernels"]))
+    print(*expensive, sep="\n")
     if offences:
         print(f"\nMore than {100 * ALLOWED:.0f} % above {RECORD.relative_to(ROOT)} (commit {recorded.get('commit')}):")
         print(*(f"  {offence}" for offence in offences), sep="\n")
         print(f"If that is intended, say why in the commit and record anew: {HOW_TO_RECORD}")
-    return 1 if offences else 0
+    return 1 if offences or expensive else 0
 
 
 if __name__ == "__main__":

@@ -46,6 +46,12 @@ class InstructionCounts(unittest.TestCase):
         found = list(instructions.slower({"old": kernel(1)}, {"new": kernel(1)}))
         self.assertEqual(found, ["new: measured, but not in the record", "old: in the record, but not measured any more"])
 
+    def test_show_what_effects_cost_that_are_off(self):
+        usual, pruned = instructions.OFF_EFFECTS
+        self.assertEqual(list(instructions.costly_when_off({usual: kernel(1009), pruned: kernel(1000)})), [])
+        found = list(instructions.costly_when_off({usual: kernel(1030), pruned: kernel(1000)}))
+        self.assertEqual(found, ["effects that are off cost 3.00 % of an exposure, not at most 1 %"])
+
     def test_cannot_be_measured_without_the_program(self):
         with self.assertRaises(instructions.CannotMeasure):
             instructions.measure(str(pathlib.Path(__file__).with_name("not_there")))

@@ -1,8 +1,12 @@
 // Time of photometry in a crowded field like the reference one: 32,240 stars on 480 × 480 px.
 #include <benchmark/benchmark.h>
 
+#include <cmath>
+
 #include "astroid/photometry/background.hpp"
+#include "astroid/photometry/calibration.hpp"
 #include "astroid/photometry/estimator.hpp"
+#include "astroid/photometry/reference_pixels.hpp"
 #include "astroid/test/ground_scene.hpp"
 
 namespace astroid {
@@ -41,6 +45,55 @@ void methods(benchmark::internal::Benchmark* b) {
     for (const BackgroundMethod background : {BackgroundMethod::kKnown, BackgroundMethod::kLocal})
       b->Args({static_cast<long>(method), static_cast<long>(background)});
 }
+
+// Prescan, overscan and the light-sensitive pixels of the field.
+const std::shared_ptr<const PixelLayout>& layout_with_reference_pixels() {
+  static const auto layout = std::make_shared<const PixelLayout>(
+      std::vector<Rectangle>{{0, 0, kSide, kSide}}, std::vector<Rectangle>{{-25, 0, 25, kSide}, {0, kSide, kSide, 30}});
+  return layout;
+}
+
+Frame frame_with_noise() {
+  Frame frame = test::empty_frame(layout_with_reference_pixels(), Gain(25.0), Adu(1000.0));
+  const test::TestNoise noise(2);
+  std::uint32_t i = 0;
+  for (float& pixel : frame.pixels.pixels())
+    pixel = static_cast<float>(std::nearbyint(1000.0 + 2.0 * noise.normal(0, i++)));
+  return frame;
+}
+
+void BM_ColumnLevels(benchmark::State& state) {
+  const Frame frame = frame_with_noise();
+  const ReferenceNoise noise{.readout = 2.03, .gain = 25.0, .bias = 1000.0};
+  std::vector<double> levels(kSide);
+  for (auto _ : state) {
+    column_levels(frame.pixels.view(2), noise, levels);
+    benchmark::DoNotOptimize(levels.data());
+  }
+  state.SetItemsProcessed(state.iterations() * kSide * 30);
+}
+BENCHMARK(BM_ColumnLevels)->Unit(benchmark::kMicrosecond);
+
+// What calibration takes of a frame: 0 smearing, 1 bias from the prescan, 2 the response of the electronics.
+void BM_Calibrate(benchmark::State& state) {
+  CalibrationModel model;
+  model.detector = {0, 0, kSide, kSide};
+  model.gain = Gain(25.0);
+  model.bias = Adu(1000.0);
+  model.readout_noise = Electrons(50.2);
+  model.subtract_smearing = state.range(0) == 0;
+  model.measure_bias = state.range(0) == 1;
+  if (state.range(0) == 2) model.response = {.a0 = 0.0, .a1 = -0.0042789409, .a2 = 2.365e-7};
+  const FrameCalibration calibration(*layout_with_reference_pixels(), model);
+  Frame frame = frame_with_noise();
+  FrameCalibration::Scratch scratch;
+  for (auto _ : state) {
+    calibration.apply(frame, scratch);
+    benchmark::ClobberMemory();
+  }
+  state.SetItemsProcessed(state.iterations() * kSide * kSide);
+}
+BENCHMARK(BM_Calibrate)->ArgName("what")->DenseRange(0, 2)->Unit(benchmark::kMicrosecond);
 
 void BM_BuildEstimators(benchmark::State& state) {
   const auto layout = test::full_frame(kSide, kSide);

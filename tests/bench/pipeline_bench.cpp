@@ -55,11 +55,24 @@ void stand_still(Mission& mission) {
   mission.satellite.jitter.model = JitterModel::kNone;
 }
 
+/// Everything between the expected image and the converter that a CCD may have.
+void read_without_a_shutter(Mission& mission) {
+  mission.ccd.reference = {.prescan = 25, .serial_overscan = 25, .parallel_overscan = 30};
+  mission.ccd.smearing.model = SmearingModel::kOpenShutter;
+  mission.ccd.nodes = {.count = 2, .gain_factor = {1.0, 1.02}, .noise_factor = {1.0, 1.1}, .cross_talk = 1e-4};
+  mission.ccd.electronics.nonlinearity = {0.0, -0.0042789409, 2.365e-7};
+  mission.ccd.electronics.gain_drift = 1e-4;
+  mission.ccd.electronics.bias_drift = 2.0;
+  mission.ccd.electronics.row_offset = 0.2;
+  mission.ccd.bad_pixels = {.dead = 1e-4, .hot = 1e-4};
+}
+
 const std::vector<Variant>& scenes() {
   static const std::vector<Variant> list = {
       {"reference", Detector::kReference, [](Mission&) {}},
       {"everything", Detector::kEverything, [](Mission&) {}},
       {"static", Detector::kReference, stand_still},
+      {"readout", Detector::kEverything, read_without_a_shutter},
   };
   return list;
 }
@@ -151,7 +164,7 @@ void BM_Effects(benchmark::State& state) {
           bench::typical(milliseconds[i]);
   state.SetLabel(variant.name);
 }
-BENCHMARK(BM_Effects)->DenseRange(0, 2)->ArgName("scene")->Iterations(100)->Unit(benchmark::kMillisecond);
+BENCHMARK(BM_Effects)->DenseRange(0, 3)->ArgName("scene")->Iterations(100)->Unit(benchmark::kMillisecond);
 
 // ---- What comes after ----
 

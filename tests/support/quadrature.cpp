@@ -55,11 +55,51 @@ long double refine(const std::function<long double(long double)>& f, long double
   return refine(f, from, middle, relative, depth - 1) + refine(f, middle, to, relative, depth - 1);
 }
 
+// The 7-point Kronrod rule about the 3-point Gauss rule: enough for the pieces of a spline.
+Integral small_rule(const std::function<long double(long double)>& f, long double from, long double to) {
+  constexpr std::array<long double, 3> kSmallNodes = {
+      0.960491268708020283423507092629080L, 0.774596669241483377035853079956480L, 0.434243749346802558002071502844628L};
+  constexpr std::array<long double, 4> kSmallKronrod = {
+      0.104656226026467265193823857192073L, 0.268488089868333440728569280666710L, 0.401397414775962222905051818618432L,
+      0.450916538658474142345110087045571L};
+  const long double middle = 0.5L * (from + to);
+  const long double half = 0.5L * (to - from);
+  const long double centre = f(middle);
+  long double value = kSmallKronrod[3] * centre;
+  long double gauss = 8.0L / 9.0L * centre;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const long double both = f(middle - half * kSmallNodes[i]) + f(middle + half * kSmallNodes[i]);
+    value += kSmallKronrod[i] * both;
+    if (i == 1) gauss += 5.0L / 9.0L * both;
+  }
+  return {value * half, std::abs(value - gauss) * half};
+}
+
+Integral refine_absolute(const std::function<long double(long double)>& f, long double from, long double to,
+                         long double absolute, int depth) {
+  constexpr long double kRounding = 1e-18L;
+  const Estimate whole = kronrod(f, from, to);
+  if (depth == 0 || whole.error <= absolute || whole.error <= kRounding * whole.absolute)
+    return {whole.value, whole.error};
+  const long double middle = 0.5L * (from + to);
+  Integral sum = refine_absolute(f, from, middle, 0.5L * absolute, depth - 1);
+  sum += refine_absolute(f, middle, to, 0.5L * absolute, depth - 1);
+  return sum;
+}
+
+constexpr int kDeepest = 24;
+
 }  // namespace
+
+Integral integrate_absolute(const std::function<long double(long double)>& f, long double from, long double to,
+                            long double absolute) {
+  const Integral small = small_rule(f, from, to);
+  if (small.error <= absolute) return small;
+  return refine_absolute(f, from, to, absolute, kDeepest);
+}
 
 long double integrate(const std::function<long double(long double)>& f, long double from, long double to,
                       long double relative) {
-  constexpr int kDeepest = 24;
   return refine(f, from, to, relative, kDeepest);
 }
 

@@ -60,6 +60,7 @@ struct PhotometryOptions {
   std::string catalogue;
   std::string method = "aperture";
   std::string psf;  ///< file or gaussian:SIGMA_PX
+  bool ignore_overscan = false;
   std::optional<double> radius, gain, read_noise, saturation, zero_point, exposure_time;
   std::string background = "local";  ///< local, mesh or a number of ADU
   std::string output = "sources.csv";

@@ -96,6 +96,7 @@ int photometry(const PhotometryOptions& options) {
   if (options.gain) read.gain = Gain(*options.gain);
   if (options.read_noise) read.readout_noise = Electrons(*options.read_noise);
   if (options.saturation) read.saturation = Adu(*options.saturation);
+  read.use_overscan = !options.ignore_overscan;
   if (options.exposure_time) read.exposure_time = Seconds(*options.exposure_time);
 
   const std::vector<SourceRequest> requests = read_requests(options.catalogue);

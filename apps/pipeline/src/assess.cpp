@@ -33,6 +33,7 @@ void write_inputs(const std::filesystem::path& folder, const ResolvedConfigurati
   write_text_file(folder / "plan.json", to_json(*run.plan, *run.scene));
   create_folder(folder / "truth");
   write_truth(folder / "truth" / "stars.csv", *run.scene);
+  write_variable_truth(folder / "truth", *run.scene);
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "astroid/core/worker_pool.hpp"
+#include "astroid/pipeline/ground.hpp"
 #include "exposure_worker.hpp"
 #include "flux_block.hpp"
 #include "folders.hpp"
@@ -181,6 +182,7 @@ StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const s
   const std::vector<std::uint32_t> own_flags = own_flags_of(estimators);
   const std::vector<Simulator> simulators = make_simulators(scene, plan);
   const EstimatorSet set(estimators, mission.ccd.gain, mission.ccd.bias);
+  const FrameCalibration calibration(*scene->layout(), calibration_model(mission));
   const ImageFiles images(*scene, *plan, options.folder);
   const std::unique_ptr<LightCurveWriter> light_curves =
       open_light_curves(*scene, *plan, estimators, result.reference, options.folder);
@@ -191,6 +193,7 @@ StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const s
   SeriesStage series(own_flags, cameras, per_bin, static_cast<std::size_t>(length), light_curves.get());
   Stream stream({.mission = mission,
                  .simulators = simulators,
+                 .calibration = calibration,
                  .estimators = set,
                  .reference = result.reference,
                  .own_flags = own_flags,

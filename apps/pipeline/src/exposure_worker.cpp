@@ -58,6 +58,8 @@ void ExposureWorker::simulate(int camera, std::int64_t exposure) {
 void ExposureWorker::measure(Batch batch, FluxBlock& block) {
   StageClock clock;
   const std::span<Frame> frames = std::span(frames_).first(batch.count);
+  if (!input_.calibration.does_nothing())
+    for (Frame& frame : frames) input_.calibration.apply(frame, calibration_scratch_);
   if (input_.mission.photometry.background == BackgroundMethod::kMesh)
     for (Frame& frame : frames) subtract_mesh(frame, input_.mission.photometry);
   input_.estimators.apply_batch(

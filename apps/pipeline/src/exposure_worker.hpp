@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "astroid/photometry/calibration.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/pipeline/exposure_stream.hpp"
@@ -22,6 +23,7 @@ namespace astroid {
 struct StreamInput {
   const Mission& mission;
   std::span<const Simulator> simulators;  ///< by camera
+  const FrameCalibration& calibration;
   const EstimatorSet& estimators;
   std::span<const double> reference;         ///< e- per exposure, of each target
   std::span<const std::uint32_t> own_flags;  ///< that hold for every exposure, of each target
@@ -56,6 +58,7 @@ class ExposureWorker {
   ExposureState state_;
   std::vector<Frame> frames_;  // of a batch
   EstimatorSet::BatchScratch scratch_;
+  FrameCalibration::Scratch calibration_scratch_;
   std::vector<LightCurveFlag> flags_;
   StreamTimings seconds_;
   std::int64_t images_written_ = 0;

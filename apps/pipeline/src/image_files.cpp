@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <sstream>
 #include <utility>
@@ -138,6 +139,23 @@ void write_plane(FitsWriter& fits, const Plane<Pixel, Unit>& plane, FitsNumber n
   fits.write_plane(plane.view(0));
 }
 
+/// Extensions PRESCAN, OVERSCAN and SERIAL-OVERSCAN: one for each region of reference pixels, numbered by EXTVER.
+void write_reference_pixels(FitsWriter& fits, const Frame& frame, FitsNumber number, const Rectangle& detector) {
+  const PixelLayout& layout = frame.pixels.layout();
+  std::map<std::string, int> versions;
+  for (std::size_t r = layout.exposed_regions().size(); r < layout.regions().size(); ++r) {
+    const Rectangle& area = layout.regions()[r];
+    const bool is_prescan = area.x1() <= detector.x0;
+    const std::string name = is_prescan ? "PRESCAN" : area.y0 >= detector.y1() ? "OVERSCAN" : "SERIAL-OVERSCAN";
+    fits.begin_image(number, {area.nx, area.ny}, name);
+    fits.card({"EXTVER", ++versions[name], "number among those of this name"});
+    fits.card({"BUNIT", "adu", "unit of the pixels"});
+    fits.card({"LTV1", -area.x0, "image column = detector column + LTV1"});
+    fits.card({"LTV2", -area.y0, "image row = detector row + LTV2"});
+    fits.write_plane(frame.pixels.view(r));
+  }
+}
+
 /// The map that a step has just written, in its own unit.
 void write_step(FitsWriter& fits, const EffectSpec& effect, const ExposureState& state, const Scene& scene,
                 std::span<const std::string> history) {
@@ -185,7 +203,7 @@ Image<float, unit::Adu> largest_region(const Frame& frame) {
 ImageFiles::ImageFiles(const Scene& scene, const Plan& plan, std::filesystem::path folder)
     : scene_(scene), history_(history_of(plan, scene)), folder_(std::move(folder)) {
   const PixelLayout& layout = *scene.layout();
-  if (folder_.empty() || is_cube(layout)) return;
+  if (folder_.empty() || is_cube(layout) || !layout.reference_regions().empty()) return;
   const Rectangle& area = layout.regions()[0];
   std::vector<FitsCard> cards = place_cards(scene, area);
   for (FitsCard& card : image_cards(scene, {})) cards.push_back(std::move(card));
@@ -224,7 +242,8 @@ void ImageFiles::write(const Frame& frame) const {
     return;
   }
   FitsWriter fits(file);
-  write_windows(fits, frame.pixels, count_format(scene_), scene_, cards, history_);
+  write_plane(fits, frame.pixels, count_format(scene_), scene_, cards, history_);
+  write_reference_pixels(fits, frame, count_format(scene_), scene_.detector());
   fits.commit(Durability::kWithFolder);
 }
 
@@ -233,7 +252,7 @@ StepObserver ImageFiles::step_writer(int camera, std::int64_t exposure) const {
   create_folder(folder);
   return [this, folder, stem = file_name(camera, exposure), number = 0](const EffectSpec& effect,
                                                                         const ExposureState& state) mutable {
-    if (effect.level == EffectLevel::kPointing) return;  // no map changes
+    if (effect.level == EffectLevel::kPointing || effect.writes == plane_bit::kFlags) return;  // no map changes
     // Of several reads the steps between are there once for each.
     FitsWriter fits(folder / fmt::format("{}_{:02}_{}.fits", stem, ++number, effect.name));
     write_step(fits, effect, state, scene_, history_);

@@ -5,12 +5,14 @@
 #include <vector>
 
 #include "astroid/analysis/budget.hpp"
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/pipeline/calibrate.hpp"
 #include "astroid/pipeline/field.hpp"
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run.hpp"
+#include "astroid/sim/smearing.hpp"
 
 namespace astroid {
 
@@ -42,10 +44,48 @@ double faintest_of(const Scene& scene, std::span<const std::size_t> stars) {
   return faintest;
 }
 
+void believe_readout(const Scene& scene, GroundModel& model) {
+  const CcdSettings& ccd = scene.mission().ccd;
+  const FrameCalibration calibration(*scene.layout(), calibration_model(scene.mission()));
+  model.smearing.electrons = smeared_electrons(scene);
+  model.smearing.overscan_rows = calibration.overscan_rows();
+  model.bias_variance = calibration.bias_variance();
+  model.bias_is_measured = scene.mission().photometry.calibration.bias == BiasSource::kPrescan;
+  const double row_offset = ccd.electronics.row_offset * ccd.gain.value();
+  model.row_offset_variance = row_offset * row_offset;
+  model.nodes = ReadoutNodes(scene.detector(), ccd.nodes.count);
+  const double variance = ccd.readout_noise.value() * ccd.readout_noise.value();
+  for (std::size_t node = 0; node < ccd.nodes.noise_factor.size(); ++node) {
+    const double factor = ccd.nodes.noise_factor[node];
+    model.more_readout_variance[node] = variance * (factor * factor - 1.0);
+  }
+}
+
 }  // namespace
 
 std::shared_ptr<const PixelPsf> psf_in_images(const Scene& scene) {
   return imaged_psf(scene.mission(), {std::shared_ptr<const void>(), &scene.psf()});
+}
+
+CalibrationModel calibration_model(const Mission& mission) {
+  const CcdSettings& ccd = mission.ccd;
+  const CalibrationSettings& calibration = mission.photometry.calibration;
+  CalibrationModel model;
+  model.detector = {0, 0, ccd.columns, ccd.rows};
+  model.nodes = ccd.nodes.count;
+  model.gain = ccd.gain;
+  model.bias = ccd.bias;
+  double noisiest = 1.0;
+  for (const double factor : ccd.nodes.noise_factor) noisiest = std::max(noisiest, factor);
+  model.readout_noise = noisiest * ccd.readout_noise;
+  model.measure_bias = calibration.bias == BiasSource::kPrescan;
+  model.subtract_smearing = calibration.smearing;
+  if (calibration.nonlinearity) {
+    const std::vector<double>& believed = calibration.nonlinearity_coefficients;
+    model.response = make_response(believed.empty() ? ccd.electronics.nonlinearity : believed);
+  }
+  if (calibration.gain) std::ranges::copy(ccd.nodes.gain_factor, model.gain_factors.begin());
+  return model;
 }
 
 Ground perfect_ground(const Scene& scene) {
@@ -67,6 +107,7 @@ Ground perfect_ground(const Scene& scene) {
       motion_like_pixel_noise(mean_bin_motion(scene, targets), setup.exposures_per_bin, setup.cameras);
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
+  believe_readout(scene, ground.model);
   return ground;
 }
 

@@ -10,6 +10,7 @@
 #include "astroid/analysis/contamination.hpp"
 #include "astroid/analysis/target_metrics.hpp"
 #include "astroid/analysis/verdict.hpp"
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/pipeline/field.hpp"

@@ -5,6 +5,7 @@
 
 #include "astroid/sim/blooming.hpp"
 #include "astroid/sim/scene.hpp"
+#include "bloom_reach.hpp"
 #include "effects/need.hpp"
 
 namespace astroid {
@@ -13,7 +14,11 @@ EffectNeed FullWell::is_needed(const SceneSummary& scene) const {
   return full_well_need(scene);
 }
 
-void FullWell::support(const Scene& /*scene*/, std::vector<Rectangle>& /*regions*/) const {}
+void FullWell::support(const Scene& scene, std::vector<Rectangle>& regions) const {
+  if (!scene.mission().ccd.blooming) return;
+  const BloomReach reach(scene);
+  for (Rectangle& region : regions) region = reach.support(region);
+}
 
 void FullWell::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const CcdSettings& ccd = context.scene.mission().ccd;

@@ -21,7 +21,7 @@ class FullWell final : public Effect {
                                     true};
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
-  /// Charge that blooms into computed pixels from outside them is left out, which the plan states.
+  /// The rows from which charge may bloom into a region: as far as the stars in its columns can fill pixels.
   void support(const Scene& scene, std::vector<Rectangle>& regions) const override;
   void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };

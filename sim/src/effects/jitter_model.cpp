@@ -5,7 +5,8 @@
 namespace astroid {
 
 EffectNeed JitterModelEffect::is_needed(const SceneSummary& scene) const {
-  if (scene.mission->satellite.jitter.model != JitterModel::kRedNoise)
+  const JitterModel model = scene.mission->satellite.jitter.model;
+  if (model != JitterModel::kRedNoise && model != JitterModel::kSpectrum)
     return {false, "no jitter model is configured", 0.0, 0.0};
   return jitter_need(scene);
 }

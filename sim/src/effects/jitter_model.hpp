@@ -5,7 +5,8 @@
 
 namespace astroid {
 
-/// Points the spacecraft where the Ornstein-Uhlenbeck process is at each step of the exposure; shared by all cameras.
+/// Points the spacecraft where the Ornstein-Uhlenbeck process, or the noise with a given spectrum, is at each step of
+/// the exposure; shared by all cameras.
 class JitterModelEffect final : public Effect {
  public:
   static constexpr EffectSpec kSpec{

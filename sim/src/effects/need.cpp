@@ -40,20 +40,6 @@ EffectNeed full_well_need(const SceneSummary& scene) {
           std::max(0.0, highest - full_well), needed ? 1.0 : 0.0};
 }
 
-EffectNeed response_need(const SceneSummary& scene, double rms, std::string_view none) {
-  if (rms <= 0.0) return {false, std::string(none), 0.0, 0.0};
-  // The largest error of a flux is that of a star whose light is all in one pixel.
-  const double bias = rms * scene.brightest_target_electrons;
-  const double gradient = rms * scene.psf.gradient * scene.attitude_rms_px;
-  const double flux = scene.brightest_target_electrons;
-  const double variance_ratio = flux > 0.0 ? gradient * gradient / scene.relative_variance_in_bin(flux) : 0.0;
-  const bool needed = rms > scene.accuracy || variance_ratio > kVarianceTolerance;
-  return {needed,
-          fmt::format("{:.3g} % rms changes each flux by up to {:.3g} ppm, the accuracy asked for is {:.3g} ppm",
-                      100.0 * rms, 1e6 * rms, 1e6 * scene.accuracy),
-          bias, variance_ratio};
-}
-
 EffectNeed noise_need(const SceneSummary& scene, double rms, std::string_view what) {
   const double variance = rms * rms;
   const double rest = scene.faintest_target_electrons + scene.background;
@@ -76,6 +62,29 @@ std::optional<EffectNeed> common_to_reads(const SceneSummary& scene, double rms,
                                   what),
                       0.0, 0.0};
   return EffectNeed{true, fmt::format("{} may push reads beyond the range of the ADC", what), 0.0, 0.0};
+}
+
+EffectNeed response_need(const SceneSummary& scene, double rms, std::string_view what) {
+  // The largest error of a flux is that of a star whose light is all in one pixel.
+  const double flux = scene.brightest_target_electrons;
+  const double gradient = rms * scene.psf.gradient * scene.attitude_rms_px;
+  const double variance_ratio = flux > 0.0 ? gradient * gradient / scene.relative_variance_in_bin(flux) : 0.0;
+  return {rms > scene.accuracy || variance_ratio > kVarianceTolerance,
+          fmt::format("{} changes each flux by up to {:.3g} ppm, the accuracy asked for is {:.3g} ppm", what, 1e6 * rms,
+                      1e6 * scene.accuracy),
+          rms * flux, variance_ratio};
+}
+
+EffectNeed moved_charge_need(const SceneSummary& scene, double share, std::string_view what) {
+  const double full_well = scene.mission->ccd.full_well.value();
+  const double fullest = std::min(scene.peak_pixel_bound, full_well);
+  const double bias = share * fullest * scene.aperture_pixels;
+  const double variance_ratio = 2.0 * share;
+  return {bias > scene.tightest_tolerance() || variance_ratio > kVarianceTolerance,
+          fmt::format("{} moves up to {:.3g} of the charge of a pixel, {:.4g} e- in {:.3g} px; the tightest flux "
+                      "tolerance is {:.3g} e-",
+                      what, share, bias, scene.aperture_pixels, scene.tightest_tolerance()),
+          bias, variance_ratio};
 }
 
 }  // namespace astroid

@@ -1,5 +1,7 @@
 #include "effects/pixel_gain.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "astroid/core/plane_kernels.hpp"
@@ -10,7 +12,9 @@
 namespace astroid {
 
 EffectNeed PixelGain::is_needed(const SceneSummary& scene) const {
-  return response_need(scene, scene.mission->cmos.gain_rms, "all pixels have the same gain (spread 0)");
+  const double rms = scene.mission->cmos.gain_rms;
+  if (rms <= 0.0) return {false, "all pixels have the same gain (spread 0)", 0.0, 0.0};
+  return response_need(scene, rms, fmt::format("{:.3g} % rms", 100.0 * rms));
 }
 
 void PixelGain::prepare(CameraState& camera, const PrepareContext& context) const {

@@ -1,5 +1,7 @@
 #include "effects/prnu.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "astroid/core/plane_kernels.hpp"
@@ -10,7 +12,9 @@
 namespace astroid {
 
 EffectNeed Prnu::is_needed(const SceneSummary& scene) const {
-  return response_need(scene, scene.mission->ccd.prnu, "the pixel response is uniform (PRNU 0)");
+  const double rms = scene.mission->ccd.prnu;
+  if (rms <= 0.0) return {false, "the pixel response is uniform (PRNU 0)", 0.0, 0.0};
+  return response_need(scene, rms, fmt::format("{:.3g} % rms", 100.0 * rms));
 }
 
 void Prnu::prepare(CameraState& camera, const PrepareContext& context) const {

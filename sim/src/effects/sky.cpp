@@ -15,6 +15,8 @@ Electrons sky_electrons(const Mission& mission) {
 }  // namespace
 
 EffectNeed Sky::is_needed(const SceneSummary& scene) const {
+  if (scene.mission->field.sky != SkyModel::kConstant)
+    return {false, "the sky is not constant: zodiacal-sky makes it", 0.0, 0.0};
   return background_need(scene, sky_electrons(*scene.mission).value(), "sky");
 }
 

@@ -30,8 +30,8 @@ class Commands : public testing::Test {
 };
 
 TEST_F(Commands, ExplainThemselves) {
-  for (const char* command : {"assess", "simulate", "photometry", "analyse", "plan", "budget", "field", "init",
-                              "validate", "explain", "doctor"}) {
+  for (const char* command : {"assess", "simulate", "focal-plane", "photometry", "analyse", "plan", "budget", "field",
+                              "init", "validate", "explain", "doctor"}) {
     for (const char* flag : {"-h", "--help"})
       EXPECT_THAT(said({command, flag}), AllOf(HasSubstr("Usage: astroid " + std::string(command)), HasSubstr("-h")));
     EXPECT_THAT(said({"-h"}), HasSubstr(command));

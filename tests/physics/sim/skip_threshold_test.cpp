@@ -110,7 +110,31 @@ TEST_P(SkippedBelowThreshold, IsHarmless) {
 INSTANTIATE_TEST_SUITE_P(
     Effects, SkippedBelowThreshold,
     testing::Values(SkipCase{"sky", [](Mission& m, double v) { m.field.sky_background = ElectronsPerSecond(v); }, 10.0},
+                    SkipCase{"stray-light",
+                             [](Mission& m, double v) {
+                               m.field.stray_light = {ElectronsPerSecond(v), 0.5, -0.5};
+                             },
+                             10.0},
+                    SkipCase{"zodiacal-sky",
+                             [](Mission& m, double v) {
+                               // The pixel makes the sky faint: its scale, not the stars of the laboratory, is the
+                               // strength.
+                               m.field.sky = SkyModel::kZodiacal;
+                               m.ccd.pixel_scale = PixelScale(v);
+                             },
+                             15.0},
                     SkipCase{"dark-current", [](Mission& m, double v) { m.ccd.dark_current = ElectronsPerSecond(v); },
+                             10.0},
+                    SkipCase{"open-shutter-smearing",
+                             [](Mission& m, double v) {
+                               m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(v)};
+                             },
+                             10.0},
+                    SkipCase{"frame-transfer-smearing",
+                             [](Mission& m, double v) {
+                               m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(v)};
+                               m.ccd.smearing.clear_time = Seconds(0.0);
+                             },
                              10.0},
                     SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
     [](const testing::TestParamInfo<SkipCase>& parameter) {
@@ -168,6 +192,30 @@ TEST(SkippedBelowThreshold, ReadoutNoiseIsHarmless) {
             1.01 * kVarianceTolerance * p.scene->summary().faintest_target_electrons + 1e-3);
 }
 
+TEST(SkippedBelowThreshold, IntraPixelResponseIsHarmless) {
+  const auto set = [](Mission& m, double depth) { m.psf.intra_pixel.depth = depth; };
+  const double strength = threshold("intra-pixel-response", set, 1e-3);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned off = planned(mission);
+  ASSERT_FALSE(off.plan->runs("intra-pixel-response"));
+  // It is a part of the PSF, so it runs where the accuracy asked for is better.
+  mission.simulation.accuracy = Ppm(0.01);
+  const Planned on = planned(mission);
+  ASSERT_TRUE(on.plan->runs("intra-pixel-response"));
+  const std::vector<double> without = fluxes(off, off.plan, 0);
+  const std::vector<double> with = fluxes(on, on.plan, 0);
+  double worst = 0.0;
+  for (std::size_t i = 0; i < with.size(); ++i) {
+    const double tolerance = off.scene->summary().flux_tolerance(off.scene->stars()[i].electrons);
+    worst = std::max(worst, std::abs(with[i] - without[i]) / tolerance);
+  }
+  std::printf("intra-pixel-response at %.3g: moves a flux by at most %.2f of its tolerance\n", strength, worst);
+  EXPECT_LE(worst, 1.0);
+  EXPECT_GT(worst, 0.0);
+}
+
 TEST(SkippedBelowThreshold, FullWellIsNeverReached) {
   const auto set = [](Mission& m, double inverse) { m.ccd.full_well = Electrons(1.0 / inverse); };
   const double strength = threshold("full-well", set, 1e-3);
@@ -186,6 +234,86 @@ TEST(SkippedBelowThreshold, FullWellIsNeverReached) {
     EXPECT_TRUE(std::ranges::equal(a.frame.pixels.pixels(), b.frame.pixels.pixels()));
     EXPECT_EQ(b.lost_electrons, 0.0);
   }
+}
+
+/// Analogue signal in 6 x 6 px around each star, in electrons.
+std::vector<double> read_fluxes(const Planned& p, const std::shared_ptr<const Plan>& plan, std::int64_t exposure) {
+  const Simulator simulator(p.scene, plan, 0);
+  ExposureState state = simulator.make_state();
+  simulator.simulate(exposure, state, [](const EffectSpec&, const ExposureState&) {});  // so that planes are whole
+  std::vector<double> sums;
+  for (const SceneStar& star : p.scene->stars()) {
+    double sum = 0.0;
+    const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
+    const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
+    for (int y = y0; y < y0 + 6; ++y)
+      for (int x = x0; x < x0 + 6; ++x) sum += state.analog.whole().view(0).at(x, y);
+    sums.push_back(sum * p.scene->mission().ccd.gain.value());
+  }
+  return sums;
+}
+
+class ReadoutSkippedBelowThreshold : public testing::TestWithParam<SkipCase> {};
+
+TEST_P(ReadoutSkippedBelowThreshold, IsHarmless) {
+  const SkipCase& c = GetParam();
+  const double strength = threshold(c.effect, c.set, c.high);
+  ASSERT_GT(strength, 0.0) << "the effect is never left out";
+  Mission mission = quiet_mission();
+  c.set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs(c.effect));
+  double worst = 0.0;
+  for (const std::int64_t exposure : {3, 11}) {  // the draws of both are the same
+    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
+    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, c.effect), exposure);
+    for (std::size_t i = 0; i < with.size(); ++i)
+      worst = std::max(
+          worst, std::abs(with[i] - without[i]) / p.scene->summary().flux_tolerance(p.scene->stars()[i].electrons));
+  }
+  std::printf("%s at %.3g: moves a flux by at most %.2f of its tolerance\n", c.effect, strength, worst);
+  EXPECT_LE(worst, 1.0);
+  EXPECT_GT(worst, 0.0) << "the effect did nothing: was it run?";
+}
+
+INSTANTIATE_TEST_SUITE_P(Effects, ReadoutSkippedBelowThreshold,
+                         testing::Values(SkipCase{"non-linearity",
+                                                  [](Mission& m, double v) {
+                                                    m.ccd.electronics.nonlinearity = {0.0, v, 0.0};
+                                                  },
+                                                  1.0},
+                                         SkipCase{"bias-drift",
+                                                  [](Mission& m, double v) { m.ccd.electronics.bias_drift = v; }, 10.0},
+                                         SkipCase{"cross-talk",
+                                                  [](Mission& m, double v) {
+                                                    m.ccd.nodes.count = 4;
+                                                    m.ccd.nodes.cross_talk = v;
+                                                  },
+                                                  0.1}),
+                         [](const testing::TestParamInfo<SkipCase>& parameter) {
+                           std::string name = parameter.param.effect;
+                           std::erase(name, '-');
+                           return name;
+                         });
+
+TEST(SkippedBelowThreshold, RowOffsetIsHarmless) {
+  const auto set = [](Mission& m, double adu) { m.ccd.electronics.row_offset = adu; };
+  const double strength = threshold("row-offset", set, 100.0);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs("row-offset"));
+  double square = 0.0;
+  for (std::int64_t exposure = 0; exposure < mission.simulation.exposures; ++exposure) {
+    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
+    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, "row-offset"), exposure);
+    const double difference = with.front() - without.front();  // the faintest star
+    square += difference * difference / static_cast<double>(mission.simulation.exposures);
+  }
+  // The variance that 32 exposures show scatters by 25 %.
+  EXPECT_LE(square, 2.0 * kVarianceTolerance * p.scene->summary().faintest_target_electrons);
+  EXPECT_GT(square, 0.0);
 }
 
 }  // namespace

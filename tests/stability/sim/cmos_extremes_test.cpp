@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "astroid/test/scenes.hpp"

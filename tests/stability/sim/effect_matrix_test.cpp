@@ -38,6 +38,34 @@ std::vector<Switch> switches() {
       {"few bits", [](Mission& m) { m.ccd.adc_bits = 12; }},
       {"full well", [](Mission& m) { m.ccd.full_well = Electrons(90000.0); }},
       {"no blooming", [](Mission& m) { m.ccd.blooming = false; }},
+      {"reference pixels",
+       [](Mission& m) { m.ccd.reference = {.prescan = 4, .serial_overscan = 3, .parallel_overscan = 5}; }},
+      {"open shutter", [](Mission& m) { m.ccd.smearing.model = SmearingModel::kOpenShutter; }},
+      {"frame transfer",
+       [](Mission& m) {
+         m.ccd.smearing.model = SmearingModel::kFrameTransfer;
+         m.ccd.smearing.clear_time = Seconds(0.0);
+       }},
+      {"two nodes",
+       [](Mission& m) {
+         m.ccd.nodes = {.count = 2, .gain_factor = {1.0, 1.15}, .noise_factor = {1.0, 0.0}, .cross_talk = 1e-3};
+       }},
+      {"four nodes",
+       [](Mission& m) {
+         m.ccd.nodes = {.count = 4, .gain_factor = {}, .noise_factor = {2.0, 1.0, 1.0, 1.0}, .cross_talk = -1e-2};
+       }},
+      {"non-linearity",
+       [](Mission& m) {
+         m.ccd.electronics.nonlinearity = {0.3, -0.0043, 2.4e-7};
+       }},
+      {"drifts",
+       [](Mission& m) {
+         m.ccd.electronics.gain_drift = 0.01;
+         m.ccd.electronics.bias_drift = 20.0;
+         m.ccd.electronics.drift_period = Seconds(60.0);
+       }},
+      {"row offsets", [](Mission& m) { m.ccd.electronics.row_offset = 3.0; }},
+      {"bad pixels", [](Mission& m) { m.ccd.bad_pixels = {.dead = 0.05, .hot = 0.05}; }},
       {"jitter",
        [](Mission& m) {
          m.satellite.jitter.model = JitterModel::kRedNoise;
@@ -48,6 +76,47 @@ std::vector<Switch> switches() {
          m.satellite.jitter.model = JitterModel::kRedNoise;
          m.satellite.jitter.yaw = m.satellite.jitter.roll = Arcseconds(6.0);
          m.satellite.jitter.timescale = Seconds(3.0);
+       }},
+      {"drift", [](Mission& m) { m.satellite.drift.yaw_rate = Arcseconds(4000.0); }},
+      {"re-pointing",
+       [](Mission& m) {
+         m.satellite.quarter_days = 30.0 / 86400.0;
+         m.satellite.repointing.pitch = m.satellite.repointing.roll = Arcseconds(9.0);
+         m.satellite.drift.roll = Arcseconds(60.0);
+       }},
+      {"aberration", [](Mission& m) { m.satellite.aberration = true; }},
+      {"zodiacal sky", [](Mission& m) { m.field.sky = SkyModel::kZodiacal; }},
+      {"stray light",
+       [](Mission& m) {
+         m.field.stray_light = {.level = ElectronsPerSecond(64.0), .gradient_x = 0.5, .gradient_y = -0.5};
+       }},
+      {"flat field", [](Mission& m) { m.ccd.flat_field = {.rms = 0.4, .exponent = 2.0}; }},
+      {"charge injection",
+       [](Mission& m) { m.ccd.charge_injection = {.every_rows = 7, .first_row = 3, .level = Electrons(3e4)}; }},
+      {"cosmic rays", [](Mission& m) { m.ccd.cosmic_rays.rate = 3000.0; }},
+      {"cosmic rays through a slab",
+       [](Mission& m) {
+         m.ccd.cosmic_rays.rate = 1000.0;
+         m.ccd.cosmic_rays.model = CosmicRayKind::kSlab;
+         m.ccd.cosmic_rays.longest_track = Pixels(60.0);
+       }},
+      {"brighter-fatter",
+       [](Mission& m) { m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 5e-7, .decay = 0.5, .range = 3}; }},
+      {"overscan", [](Mission& m) { m.ccd.reference = {.prescan = 2, .serial_overscan = 3, .parallel_overscan = 4}; }},
+      {"two nodes", [](Mission& m) { m.ccd.nodes.count = 2; }},
+      {"simple CTI",
+       [](Mission& m) {
+         m.ccd.cti.model = CtiModel::kSimple;
+         m.ccd.cti.parallel = 1e-3;
+         m.ccd.cti.serial = 1e-4;
+       }},
+      {"traps",
+       [](Mission& m) {
+         m.ccd.cti.model = CtiModel::kTraps;
+         m.ccd.cti.trap_density = {4.9, 6.62};
+         m.ccd.cti.register_density = {0.5, 0.0};
+         m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
+         m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
        }},
       {"narrow PSF", [](Mission& m) { m.psf.sigma = Pixels(0.05); }},
       {"wide PSF", [](Mission& m) { m.psf.sigma = Pixels(4.5); }},

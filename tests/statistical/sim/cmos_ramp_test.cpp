@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <vector>
 
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "astroid/test/scenes.hpp"

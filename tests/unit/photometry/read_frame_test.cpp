@@ -130,5 +130,55 @@ TEST(ReadFrame, ReadsOnePlaneOfACubeWithItsCoordinates) {
   EXPECT_THROW((void)read_frame(path, options), InputError);
 }
 
+/// An image of columns 7 … 9 and rows 20, 21 of a detector of 100 rows, with prescan and overscan beside it.
+std::filesystem::path write_with_reference_pixels(const test::TemporaryFolder& folder, int overscan_from) {
+  auto path = folder.path() / "reference.fits";
+  FitsWriter writer(path);
+  writer.begin_image(FitsNumber::kFloat32, {3, 2});
+  writer.cards(std::vector<FitsCard>{
+      {"GAIN", 25.0}, {"RDNOISE", 50.0}, {"EXPTIME", 21.0}, {"SATURATE", 65535.0}, {"LTV1", -7}, {"LTV2", -20}});
+  writer.write_pixels(0, std::vector<float>{1100.0F, 1200.0F, 1300.0F, 1101.0F, 1201.0F, 1301.0F});
+  writer.begin_image(FitsNumber::kFloat32, {2, 2}, "PRESCAN");
+  writer.cards(std::vector<FitsCard>{{"LTV1", 2}, {"LTV2", -20}});
+  writer.write_pixels(0, std::vector<float>{999.0F, 1001.0F, 998.0F, 1002.0F});
+  // One column more on either side, as beside another window.
+  writer.begin_image(FitsNumber::kFloat32, {5, 3}, "OVERSCAN");
+  writer.cards(std::vector<FitsCard>{{"LTV1", -6}, {"LTV2", -overscan_from}});
+  std::vector<float> rows;
+  for (int row = -1; row <= 1; ++row)
+    for (const float level : {0.0F, 1010.0F, 1020.0F, 1030.0F, 0.0F}) rows.push_back(level + static_cast<float>(row));
+  writer.write_pixels(0, rows);
+  writer.commit();
+  return path;
+}
+
+TEST(ReadFrame, SubtractsWhatOverscanRowsShowAndKeepsTheBias) {
+  const test::TemporaryFolder folder;
+  const std::filesystem::path path = write_with_reference_pixels(folder, 100);
+  const ImageFile file = read_frame(path);
+  const auto pixels = file.frame.pixels.view(0);
+  for (int x = 0; x < 3; ++x)
+    for (int y = 0; y < 2; ++y)
+      EXPECT_NEAR(pixels.at(x, y), 1000.0 + 100.0 * (x + 1) + y - 10.0 * (x + 1), 1e-3) << x << "," << y;
+  ASSERT_EQ(file.notes.size(), 1U);
+  EXPECT_EQ(file.notes[0], "The mean of 3 overscan rows, above a bias of 1000 ADU, was subtracted from each column.");
+  FrameReadOptions options;
+  options.use_overscan = false;
+  const ImageFile raw = read_frame(path, options);
+  EXPECT_EQ(raw.frame.pixels.view(0).at(1, 0), 1200.0F);
+  EXPECT_TRUE(raw.notes.empty());
+  options = {};
+  options.bias = Adu(1004.0);
+  EXPECT_EQ(read_frame(path, options).frame.pixels.view(0).at(1, 0), 1184.0F) << "the user knows better";
+}
+
+TEST(ReadFrame, LeavesOverscanThatLiesElsewhereAlone) {
+  const test::TemporaryFolder folder;
+  const ImageFile file = read_frame(write_with_reference_pixels(folder, 10));
+  EXPECT_EQ(file.frame.pixels.view(0).at(1, 0), 1200.0F);
+  ASSERT_EQ(file.notes.size(), 1U);
+  EXPECT_EQ(file.notes[0], "The OVERSCAN extension does not lie above the image (LTV1, LTV2) and was not used.");
+}
+
 }  // namespace
 }  // namespace astroid

@@ -80,10 +80,13 @@ TEST(Tables, WriteTheDocumentedColumnsAndTheValues) {
         std::pow(value(row, "nsr_1h_photon_ppm"), 2) + std::pow(value(row, "nsr_1h_contaminants_ppm"), 2) +
         std::pow(value(row, "nsr_1h_background_ppm"), 2) + std::pow(value(row, "nsr_1h_readout_ppm"), 2) +
         std::pow(value(row, "nsr_1h_quantisation_ppm"), 2) + std::pow(value(row, "nsr_1h_background_estimate_ppm"), 2) +
-        std::pow(value(row, "nsr_1h_jitter_ppm"), 2) + std::pow(value(row, "nsr_1h_prnu_jitter_ppm"), 2));
+        std::pow(value(row, "nsr_1h_jitter_ppm"), 2) + std::pow(value(row, "nsr_1h_prnu_jitter_ppm"), 2) +
+        std::pow(value(row, "nsr_1h_smearing_ppm"), 2) + std::pow(value(row, "nsr_1h_bias_ppm"), 2) +
+        std::pow(value(row, "nsr_1h_drift_ppm"), 2));
     EXPECT_NEAR(causes / value(row, "nsr_1h_ppm"), 1.0, 1e-12);
     EXPECT_NEAR(value(row, "delta_mag"),
-                value(row, "delta_contamination") + value(row, "delta_aperture_loss") + value(row, "delta_residual"),
+                value(row, "delta_contamination") + value(row, "delta_aperture_loss") + value(row, "delta_smearing") +
+                    value(row, "delta_residual"),
                 1e-12);
   }
 }

@@ -43,7 +43,8 @@ struct FocalPlanePoint {
 };
 
 /// A polynomial over the detector, by weighted least squares: quadratic from nine points on, a plane from four, else
-/// the weighted mean. Points without a value are left out; without errors all count the same.
+/// the weighted mean. Points without a value are left out, and where some have errors those that have none; without
+/// any errors all count the same.
 ///
 /// Errors are those of the fit, increased where the points scatter more than theirs explain (chi² per degree of freedom
 /// above 1): what the surface cannot follow is in them.

@@ -24,9 +24,14 @@ struct RunSetup {
   int cameras = 1;                   ///< N that observe the field
   int simulated_cameras = 1;         ///< n <= N whose mean the measured series is
   double prnu = 0.0;                 ///< rms of pixel gains that calibration leaves, relative
+  double flat_field = 0.0;           ///< rms of a large-scale pattern that calibration leaves, relative
+  double flat_field_exponent = 1.0;  ///< of its spectrum
+  double gain_drift = 0.0;           ///< amplitude of a slow change of the gain that calibration leaves, relative
+  double bias_drift = 0.0;           ///< the same of the bias, e-
   double uncontaminated_spr = 1e-3;  ///< stars with less contamination judge magnitude recovery
 };
-/// @param prnu  pixel gains are not corrected, so the whole of CCD/PRNU is left, unless the caller knows better.
+/// Unequal sensitivity is not corrected, so the whole of CCD/PRNU and CCD/FlatField is left, unless the caller knows
+/// better.
 RunSetup run_setup(const Mission& mission);
 
 /// Noise of the mean over one bin by its cause, ppm of the target's flux in the aperture.
@@ -39,7 +44,12 @@ struct NoiseByCause {
   double background_estimate = 0.0;  ///< of the local background
   double jitter = 0.0;               ///< light that crosses the edge of the aperture; common to all cameras
   double prnu_jitter = 0.0;          ///< the star moving over unequal pixels; differs from camera to camera
+  double smearing = 0.0;             ///< photon noise of what is smeared into the aperture, and of its correction
+  double bias = 0.0;                 ///< of a measured bias, and offsets of rows
+  double drift = 0.0;                ///< of gain and bias, slower than a bin; common to all cameras
   [[nodiscard]] double total() const;
+  /// What comes with the pixels and not with the stars, readout apart: sky, dark, smearing, and the levels subtracted.
+  [[nodiscard]] double of_levels() const;
 };
 
 /// Predicted noise of one target.
@@ -56,10 +66,11 @@ struct PredictedNoise {
 /// that is left in the mean and not with cameras, PRNU with jitter by the motion and with cameras.
 PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup);
 
-/// Differences of magnitude, each a cause: measured - true = contamination + aperture_loss + residual.
+/// Differences of magnitude, each a cause: measured - true = contamination + aperture_loss + smearing + residual.
 struct MagnitudeCauses {
   double contamination = 0.0;                                  ///< 2.5 log10(1 - SPR_tot), <= 0: neighbours brighten
   double aperture_loss = 0.0;                                  ///< -2.5 log10(enclosed fraction), >= 0
+  double smearing = 0.0;                                       ///< <= 0 with a known sky: columns brighten
   double residual = std::numeric_limits<double>::quiet_NaN();  ///< what neither explains: saturation, background, bias
 };
 
@@ -72,13 +83,15 @@ struct TargetMetrics {
   double nsr_exposure = 0.0;  ///< predicted.exposure
   double nsr_1h_ppm = 0.0;    ///< predicted.bin.total()
   PredictedNoise predicted;
-  double spr_tot = 0.0;              ///< stellar pollution ratio, sky excluded
-  double crowdsap = 0.0;             ///< 1 - spr_tot
-  double flfrcsap = 0.0;             ///< target's flux in the aperture / all flux of the target
-  double flux_in = 0.0;              ///< e- per exposure, all of the PSF
-  double flux_expected = 0.0;        ///< e- per exposure, target and contaminants in the aperture
-  std::uint32_t flags = 0;           ///< measurement_flag bits
-  double prnu_magnitude = 0.0;       ///< expected rms error of the magnitude by fixed unequal pixels, n cameras, mag
+  double spr_tot = 0.0;        ///< stellar pollution ratio, sky excluded
+  double crowdsap = 0.0;       ///< 1 - spr_tot
+  double flfrcsap = 0.0;       ///< target's flux in the aperture / all flux of the target
+  double flux_in = 0.0;        ///< e- per exposure, all of the PSF
+  double flux_expected = 0.0;  ///< e- per exposure: target, contaminants and what is smeared into the aperture
+  double flux_smeared = 0.0;   ///< the last of these, 0 where it is corrected
+  std::uint32_t flags = 0;     ///< measurement_flag bits
+  double prnu_magnitude =
+      0.0;  ///< expected rms error of the magnitude by fixed unequal pixels and the flat field, n cameras, mag
   double neighbour_magnitude = 0.0;  ///< the same by the doubt of neighbours' light that PSF weights take out, mag
 
   std::int64_t exposures = 0, missing = 0;

@@ -25,6 +25,9 @@ struct CatalogueStar {
   double electrons = 0.0;  ///< per exposure (kElectrons)
   double colour = 0.0;     ///< B-V, B_T-V_T or BP-RP, as `colour_index` of the catalogue says; NaN: unknown
   double teff = 0.0;       ///< K; NaN: unknown
+  double pm_ra = 0.0;      ///< proper motion in right ascension times cos(dec), mas/yr; 0 where unknown
+  double pm_dec = 0.0;     ///< and in declination, mas/yr
+  double epoch = 0.0;      ///< Julian year of its position; 0: that of the whole catalogue
 };
 
 struct StarCatalogue {

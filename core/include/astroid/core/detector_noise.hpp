@@ -16,8 +16,9 @@ RampNoise ramp_noise(const Mission& mission);
 /// Variance of one read of a pixel, e-²: readout and quantisation noise.
 double read_variance(const Mission& mission);
 
-/// Sky and dark current of one exposure, and the noise of reading it.
-PixelNoise expected_pixel_noise(const Mission& mission);
+/// Background light and dark current of one exposure, and the noise of reading it.
+/// @param light  sky and stray light, per pixel; expected_pixel_noise(mission) in sky_brightness.hpp knows it.
+PixelNoise expected_pixel_noise(const Mission& mission, ElectronsPerSecond light);
 
 /// Readout noise that the fit of a ramp leaves in a dark pixel, over that of one read; 1 where there is one.
 double fitted_readout_factor(const Mission& mission);

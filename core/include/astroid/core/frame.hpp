@@ -16,6 +16,9 @@ inline constexpr std::uint8_t kFullWell = 1;      ///< charge reached the full w
 inline constexpr std::uint8_t kAdcSaturated = 2;  ///< the ADC clipped
 inline constexpr std::uint8_t kBad = 4;           ///< defective, masked or not finite
 inline constexpr std::uint8_t kShortRamp = 8;     ///< fitted to the reads before it saturated: noisier, not wrong
+inline constexpr std::uint8_t kCosmicRay = 16;    ///< a particle left charge here
+/// What only the simulation knows: photometry takes no notice of these.
+inline constexpr std::uint8_t kTruth = kCosmicRay;
 }  // namespace pixel_flag
 
 /// What a FITS header says of an exposure.

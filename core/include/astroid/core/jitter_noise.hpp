@@ -26,6 +26,11 @@ double prnu_jitter_noise(double prnu, std::span<const double> dpdx, std::span<co
 /// Scatter of the flux over positions that share no pixels, from pixel gain errors of rms `prnu`: prnu sqrt(sum p^2).
 double prnu_static_noise(double prnu, std::span<const double> fractions);
 
+/// The same from a pattern of rms `rms` with a spatial spectrum f^-exponent: rms share^(1 - exponent / 2), at most rms.
+/// An aperture sees the frequencies below that of its own size, which is 1 / share.
+/// @param share  sqrt(sum p^2).  @accuracy 20 % (test: FlatField.ScattersFluxesAsPredicted).
+double flat_field_static_noise(double rms, double exponent, double share);
+
 /// Times of a series of exposures.
 struct Cadence {
   Seconds cycle;          ///< from start to start

@@ -8,6 +8,7 @@
 
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/image.hpp"
+#include "astroid/core/pixel_response.hpp"
 
 namespace astroid {
 
@@ -105,6 +106,16 @@ PsfTable read_psf_table(const std::string& path);
 /// The table's flux per sample is kept exactly: its running integral is a tensor cubic spline through the sample edges.
 /// @param accuracy  relative flux error allowed to the interpolation; decides the number of phases.
 /// @param phases    number of phases per axis, or 0 to let `accuracy` decide.
-std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases = 0);
+/// @param response  sensitivity within every pixel, folded in exactly: a fraction is then the light of each cell of the
+///                  pixel times the cell's sensitivity, and their sum is 1 on the mean over the star's places only.
+std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases = 0,
+                                             const PixelResponse& response = {});
+
+/// A circular Gaussian as a table, its samples holding the exact flux, so fine and so wide that make_prf_psf() of it is
+/// the Gaussian within `accuracy` of the star's light.
+/// @accuracy  the running integral's spline leaves 4e-3 / (samples per sigma)⁴ of the light in the brightest pixel
+///            (test: GaussianTable.IsAsFineAsTheAccuracyNeeds)
+/// @param sigma  px, > 0
+PsfTable make_gaussian_table(double sigma, double accuracy);
 
 }  // namespace astroid

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <iterator>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@
 #include "astroid/core/mission.hpp"
 #include "astroid/core/noise.hpp"
 #include "astroid/core/psf.hpp"
+#include "astroid/core/readout_nodes.hpp"
 
 namespace astroid {
 
@@ -47,6 +49,18 @@ struct FieldStar {
   double electrons = 0.0;  ///< per exposure, all of the PSF
 };
 
+/// Light that is smeared along columns while they are read, as the ground believes it, and what is done about it.
+struct ColumnSmearing {
+  int first_column = 0;
+  std::vector<double> electrons;  ///< e- per pixel and exposure, of first_column and those after it; empty: none
+  /// Overscan rows whose mean is subtracted from every pixel of their column; 0: what is smeared stays in the flux.
+  int overscan_rows = 0;
+  [[nodiscard]] double at(int column) const {
+    const auto i = static_cast<std::int64_t>(column) - first_column;
+    return i >= 0 && i < std::ssize(electrons) ? electrons[static_cast<std::size_t>(i)] : 0.0;
+  }
+};
+
 /// Everything the ground believes when it builds estimators.
 struct GroundModel {
   std::span<const FieldStar> stars;      ///< targets and every contaminant
@@ -65,6 +79,13 @@ struct GroundModel {
   /// px², of all stars together, against which PSF weights guard as against noise of one exposure; motion that averages
   /// out more slowly than pixel noise is to be given larger by that much. 0: the weights are those of stars at rest.
   MotionCovariance motion;
+  ColumnSmearing smearing;
+  double bias_variance = 0.0;        ///< e-², of the bias level where it is measured in each exposure; 0: it is known
+  double row_offset_variance = 0.0;  ///< e-², of an offset that each row has in each exposure
+  bool bias_is_measured = false;     ///< in each exposure, so that its drift does not matter
+  /// Which pixel is read through which node, and what the readout noise of each has more than `noise`, e-².
+  ReadoutNodes nodes{{}, 1};
+  std::array<double, kMostNodes> more_readout_variance{};
 };
 
 /// Expected electrons and variance (e-, e-²) of one estimator in one exposure, cause by cause.
@@ -81,8 +102,14 @@ struct EstimatorBudget {
   /// PSF weights take out may be wrong by GroundModel::flux_doubt. 0 for methods that leave it in the flux. Reported as
   /// delta_neighbours_rms of targets.csv.
   double var_neighbour_doubt = 0.0;
+  double smearing = 0.0;                 ///< weighted electrons that are smeared into the flux and stay there
+  double var_smearing = 0.0;             ///< photon noise of what is smeared into the pixels, corrected or not
+  double var_smearing_correction = 0.0;  ///< of the column levels that are subtracted: the same for all rows
+  double var_bias = 0.0;                 ///< of a bias that is measured in each exposure, and of offsets of rows
+  double bias_weight = 0.0;              ///< change of the flux, e-, with a bias higher by 1 e- than believed
   [[nodiscard]] double variance() const {
-    return var_target + var_contaminants + var_background + var_readout + var_quantisation + var_background_estimate;
+    return var_target + var_contaminants + var_background + var_readout + var_quantisation + var_background_estimate +
+           var_smearing + var_smearing_correction + var_bias;
   }
 };
 

@@ -87,6 +87,9 @@ struct FrameReadOptions {
   std::optional<Seconds> exposure_time;
   int unit = 0;            ///< header-data unit, 1 is the primary; 0: the first image
   std::int64_t plane = 0;  ///< of a cube
+  /// Whether what OVERSCAN extensions show is subtracted from the columns of a plain image: light that was smeared
+  /// while it was read.
+  bool use_overscan = true;
 };
 
 /// An image of anybody's as a frame.

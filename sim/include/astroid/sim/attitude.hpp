@@ -12,6 +12,7 @@
 #include "astroid/core/mission.hpp"
 #include "astroid/core/random.hpp"
 #include "astroid/core/wcs.hpp"
+#include "astroid/sim/jitter_spectrum.hpp"
 
 namespace astroid {
 
@@ -88,6 +89,15 @@ std::shared_ptr<const AttitudeModel> make_still_attitude();
 std::shared_ptr<const AttitudeModel> make_red_noise_attitude(const JitterSettings& jitter,
                                                              const SimulationSettings& simulation,
                                                              const RandomStream& stream);
+
+/// Gaussian jitter with a given power spectral density, the axes independent, as a pure function of absolute time: any
+/// instant is the same in a longer run, in a run that is resumed, and for any number of steps. Resolves spectra to 1/16
+/// of the frequency; nothing slower than the lowest frequency of the spectrum, so its mean is zero.
+/// @param source  what descriptions call the spectrum.
+/// @source Shinozuka1991, PrincenBradley1986
+std::shared_ptr<const AttitudeModel> make_spectrum_attitude(const JitterSpectrum& spectrum, const std::string& source,
+                                                            const SimulationSettings& simulation,
+                                                            const RandomStream& stream);
 
 /// Attitude from a file of columns time_s, yaw, pitch, roll (s since start, arcsec), linear between its samples.
 /// @throws InputError with every bad line, or when the file does not cover the run.

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -12,6 +13,8 @@
 
 #include "astroid/core/frame.hpp"
 #include "astroid/core/random.hpp"
+#include "astroid/core/sub_pixel.hpp"
+#include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "astroid/sim/cmos_state.hpp"
 #include "astroid/sim/conditions.hpp"
@@ -22,6 +25,7 @@
 namespace astroid {
 
 class Scene;
+class SmearedColumns;
 struct PlanKnobs;
 
 /// Levels of the chain, in the order of the run.
@@ -98,21 +102,44 @@ struct EffectNeed {
 
 /// What rendering a star takes.
 struct RenderedStar {
-  PixelPosition position;   ///< px, at the nominal pointing
-  double electrons = 0.0;   ///< per exposure
-  double half_width = 0.0;  ///< of its stamp, px
-  AttitudeJacobian motion;  ///< px per arcsec of yaw, pitch and roll
+  PixelPosition position;         ///< px, at the nominal pointing
+  double electrons = 0.0;         ///< per exposure
+  double half_width = 0.0;        ///< of its stamp, px
+  AttitudeJacobian motion;        ///< px per arcsec of yaw, pitch and roll
+  AberrationJacobian aberration;  ///< px per velocity of the spacecraft
+  int variability = -1;           ///< of the scene; -1: constant
+};
+
+/// What is on one tile of the sub-pixel renderer.
+struct SubPixelTile {
+  Rectangle area;
+  std::vector<RenderedStar> stars;  ///< those that may reach it
+};
+
+/// Sensitivity within the pixels of one camera.
+struct IntraPixelState {
+  PixelResponse common;
+  double flat = 0.0;    ///< rms of the cells' own sensitivity
+  RandomStream stream;  ///< of which a cell takes the draw of its number
 };
 
 /// What happens to one camera that does not change from exposure to exposure; built once, then only read.
 struct CameraState {
   int camera = 0;
-  std::shared_ptr<const PixelLayout> layout;                  ///< the computed pixels
-  std::vector<Strip> strips;                                  ///< of the layout
-  std::vector<std::vector<std::vector<RenderedStar>>> stars;  ///< [strip][area]: those that may reach it
-  Plane<float, unit::Relative> prnu;                          ///< pixel response, mean 1; empty when the effect is off
-  Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
-  CmosPatterns cmos;                           ///< of a CMOS detector
+  std::shared_ptr<const PixelLayout> layout;                      ///< the computed pixels
+  std::vector<Strip> strips;                                      ///< of the layout
+  std::vector<std::vector<std::vector<RenderedStar>>> stars;      ///< [strip][area]: those that may reach it
+  std::vector<std::vector<std::vector<RenderedStar>>> variables;  ///< likewise those whose flux varies
+  std::vector<SubPixelTile> tiles;                                ///< instead of `stars`, of the sub-pixel renderer
+  std::optional<IntraPixelState> intra_pixel;                     ///< nothing when the effect is off
+  Plane<float, unit::Relative> prnu;                ///< pixel response, mean 1; empty when the effect is off
+  Plane<float, unit::Relative> flat_field;          ///< its large-scale part, mean 1; empty when the effect is off
+  Plane<float, unit::ExpectedElectrons> dark;       ///< dark electrons per exposure; empty when the effect is off
+  std::shared_ptr<const SmearedColumns> smearing;   ///< of the columns of the layout
+  Plane<float, unit::ExpectedElectrons> unsmeared;  ///< what frame transfer smears less than that; empty: nothing
+  std::vector<std::uint32_t> dead_pixels;           ///< places in the buffer of the layout, rising
+  std::vector<std::uint32_t> hot_pixels;
+  CmosPatterns cmos;  ///< of a CMOS detector
 };
 
 /// Everything that belongs to one exposure of one camera. One worker owns it.
@@ -134,9 +161,11 @@ struct ExposureState {
   std::unique_ptr<Frame> more;         ///< the computed pixels, where they are more than the delivered ones
   double lost_electrons = 0.0;         ///< charge that left through the edge of the frame or was clipped
   std::int64_t clipped_pixels = 0;     ///< by the ADC
+  NegativeLight ringing;               ///< that the sub-pixel renderer silenced
   std::vector<double> effect_seconds;  ///< wall time of each effect of the plan, over all exposures this state has seen
   std::vector<double> scratch;         ///< of the effect at work; its content means nothing between calls
   std::vector<float> normals;          ///< the same for random numbers
+  SubPixelRenderer::Workspace sub_pixel;  ///< the same of the sub-pixel renderer
 
   /// Digital numbers and flags of the computed pixels: what effects write.
   [[nodiscard]] Frame& computed() { return more != nullptr ? *more : frame; }

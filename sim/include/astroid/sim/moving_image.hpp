@@ -32,7 +32,8 @@ std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::s
 /// Makes cells where attitudes lead, and keeps the latest ones. @thread safe
 class MovingImage {
  public:
-  explicit MovingImage(AttitudePolynomial polynomial);
+  /// @param pixels  of an image, on which it depends how many cells are kept.
+  MovingImage(AttitudePolynomial polynomial, std::size_t pixels);
 
   /// The image of one exposure: the maps of its cell and the weight of each.
   struct Exposure {

@@ -37,6 +37,7 @@ struct PlanKnobs {
   int attitude_steps = 1;         ///< per exposure
   AttitudePolynomial polynomial;  ///< no terms unless the treatment is kPolynomial
   std::vector<StampTier> stamps;  ///< brightest first
+  bool variables = false;         ///< whether variable stars are rendered apart from the others
   [[nodiscard]] double stamp_half_width(double electrons) const;
 };
 
@@ -57,13 +58,16 @@ struct AccuracyShares {
 struct Plan {
   std::vector<PlannedEffect> effects;  ///< every effect of the table, on or off
   PlanKnobs knobs;
-  std::string renderer;                       ///< analytic or prf
-  std::string pixels;                         ///< full frame, sub-field or windows, and what is exact
-  std::shared_ptr<const PixelLayout> layout;  ///< the computed pixels: region r holds the scene's region r, and more
-  bool still = false;                         ///< exposures share a noiseless image
-  std::int64_t epoch_exposures = 0;           ///< exposures that share the slow conditions; 0: all of them
-  int reads = 1;                              ///< non-destructive reads of an exposure
-  double stamp_error = 0.0;                   ///< bound of the error by truncation, e- per exposure on any target
+  std::string renderer;  ///< analytic, prf or subpixel
+  std::string renderer_reason;
+  double renderer_error = 0.0;  ///< of a star's flux, relative
+  std::string pixels;           ///< full frame, sub-field or windows, and what is exact
+  std::shared_ptr<const PixelLayout>
+      layout;          ///< the computed pixels: exposed region r holds the scene's region r, or one all of them
+  bool still = false;  ///< exposures share a noiseless image
+  std::int64_t epoch_exposures = 0;  ///< exposures that share the slow conditions; 0: all of them
+  int reads = 1;                     ///< non-destructive reads of an exposure
+  double stamp_error = 0.0;          ///< bound of the error by truncation, e- per exposure on any target
   double jitter_error = 0.0;
   double psf_error = 0.0;
   double tolerance = 0.0;             ///< the tightest of any target, e- per exposure

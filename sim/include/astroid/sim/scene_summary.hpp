@@ -27,21 +27,34 @@ struct SceneSummary {
   double brightest_electrons = 0.0;  ///< per exposure
   double brightest_magnitude = 0.0;
   double peak_pixel_bound = 0.0;  ///< e-, upper bound of any pixel's expectation
+  double brightest_column = 0.0;  ///< e-, upper bound of the light of any column
   double faintest_target_electrons = 0.0;
   double brightest_target_electrons = 0.0;  ///< of those that do not saturate
-  double background = 0.0;                  ///< expected sky + dark, e- per pixel and exposure
+  double sky = 0.0;                         ///< on the axis in the middle of the run, e- per pixel and exposure
+  double background = 0.0;                  ///< expected sky + stray light + dark, e- per pixel and exposure
   double pixel_noise_variance = 0.0;        ///< background + readout² + quantisation², e-²
   double aperture_pixels = 0.0;             ///< area that bounds any target's aperture
   double exposures_per_bin = 1.0;           ///< in the longest time bin reported
   int cameras = 1;
   double attitude_rms_px = 0.0;              ///< largest displacement rms of one axis anywhere on the frame
   double attitude_rms_in_exposure_px = 0.0;  ///< rms of the motion about its mean within one exposure
+  std::size_t variable_stars = 0;            ///< on the detector
+  double largest_variation = 0.0;            ///< e- per exposure, of any of them
+  std::size_t moved_stars = 0;               ///< that have a proper motion
+  double proper_motion_px = 0.0;             ///< the farthest that one was moved to the epoch of the run
+  double epoch = 2000.0;                     ///< of the middle of the run, Julian year
+  double drift_px = 0.0;                     ///< largest displacement of any star by drift over the run
+  double repointing_px = 0.0;                ///< and by the errors of re-pointing
+  double aberration_px = 0.0;                ///< and by aberration
+  double aberration_px_per_second = 0.0;     ///< the fastest that aberration moves any star
   PsfSensitivity psf;
   double accuracy = 1e-6;  ///< the accuracy asked for, relative
 
   /// What all approximations together may add to a target's flux, e- per exposure:
   /// max(accuracy F, 0.01 sigma_F over the reported duration with all cameras) (docs/accuracy.md).
   [[nodiscard]] double flux_tolerance(double target_electrons) const;
+  /// How much a displacement of so many pixels may change a flux, relative; at most 1.
+  [[nodiscard]] double flux_change(double displacement) const;
   /// The smallest flux tolerance of any target.
   [[nodiscard]] double tightest_tolerance() const;
   /// Variance of a target's flux averaged over the reported duration and all cameras, relative to its flux squared,

@@ -61,12 +61,12 @@ TEST(ConfigurationNumbers, ReachTheEndsOfTheirRange) {
 
 TEST(ConfigurationBooleans, HaveFourSpellingsEach) {
   for (const std::string word : {"on", "true", "yes", "1"}) {
-    EXPECT_TRUE(
-        with("<Photometry><Calibration><Bias>" + word + "</Bias></Calibration></Photometry>").photometry.subtract_bias);
+    EXPECT_TRUE(with("<Photometry><Calibration><Gain>" + word + "</Gain></Calibration></Photometry>")
+                    .photometry.calibration.gain);
   }
   for (const std::string word : {"off", "false", "no", "0"}) {
-    EXPECT_FALSE(
-        with("<Photometry><Calibration><Bias>" + word + "</Bias></Calibration></Photometry>").photometry.subtract_bias);
+    EXPECT_FALSE(with("<Photometry><Calibration><Gain>" + word + "</Gain></Calibration></Photometry>")
+                     .photometry.calibration.gain);
   }
 }
 

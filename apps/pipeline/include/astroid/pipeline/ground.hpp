@@ -4,6 +4,7 @@
 #include <memory>
 #include <vector>
 
+#include "astroid/photometry/calibration.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -22,5 +23,7 @@ Ground perfect_ground(const Scene& scene);
 
 /// The PSF that stars of a scene have in its images. @param scene  must outlive the result.
 std::shared_ptr<const PixelPsf> psf_in_images(const Scene& scene);
+/// What the ground believes of the readout, and what it corrects.
+CalibrationModel calibration_model(const Mission& mission);
 
 }  // namespace astroid

@@ -11,6 +11,7 @@ namespace astroid {
 
 enum class SmearingModel { kNone, kOpenShutter, kFrameTransfer };
 enum class CtiModel { kNone, kSimple, kTraps };
+enum class CosmicRayKind { kTrail, kSlab };
 
 /// Pixels read beyond the light-sensitive ones.
 struct ReferencePixels {
@@ -24,7 +25,8 @@ struct ReferencePixels {
 /// Light that falls on the pixels while charge is moved.
 struct SmearingSettings {
   SmearingModel model = SmearingModel::kNone;
-  Seconds time{4.019};  ///< of moving a whole frame past the light
+  Seconds time{4.019};        ///< of moving all rows past the light, after the exposure
+  Seconds clear_time{4.019};  ///< the same before the exposure; of frame transfer alone
 
   friend bool operator==(const SmearingSettings&, const SmearingSettings&) = default;
 };
@@ -32,7 +34,7 @@ struct SmearingSettings {
 /// A pattern of sensitivity with a power-law spatial spectrum.
 struct FlatFieldSettings {
   double rms = 0.0;       ///< relative; 0: none
-  double exponent = 1.0;  ///< of the power spectrum, f^-exponent in each direction of frequency space
+  double exponent = 1.0;  ///< of the power spectrum, f^-exponent
 
   friend bool operator==(const FlatFieldSettings&, const FlatFieldSettings&) = default;
 };
@@ -40,24 +42,31 @@ struct FlatFieldSettings {
 /// Lines of charge injected into every nth row.
 struct ChargeInjectionSettings {
   int every_rows = 0;  ///< 0: none
-  Electrons level{0.0};
+  int first_row = 0;
+  Electrons level{0.0};  ///< of each pixel of such a row
 
   friend bool operator==(const ChargeInjectionSettings&, const ChargeInjectionSettings&) = default;
 };
 
 struct CosmicRaySettings {
-  double rate = 0.0;                          ///< hits per cm² and second; 0: none
-  double pixel_size = 18.0;                   ///< micrometres
-  Pixels longest_track{15.0};                 ///< projected lengths are uniform from 0
-  Electrons location{2500.0}, scale{2000.0};  ///< of the skew-normal distribution of their charge
-  double shape = 30.0;
+  double rate = 0.0;  ///< hits per cm² and second; 0: none
+  CosmicRayKind model = CosmicRayKind::kTrail;
+  Pixels longest_track{15.0};                               ///< on the detector; trails are uniform from 0
+  Electrons charge_location{2500.0}, charge_scale{2000.0};  ///< of the skew-normal distribution of a trail's charge
+  double charge_shape = 30.0;
+  double thickness = 16.0;    ///< of the slab, micrometres
+  double path_charge = 80.0;  ///< most probable, electrons per micrometre of path in the slab
+  double fluctuation = 0.1;   ///< Moyal width of that charge, relative
 
   friend bool operator==(const CosmicRaySettings&, const CosmicRaySettings&) = default;
 };
 
+/// How collected charge shifts pixel boundaries.
 struct BrighterFatterSettings {
-  double area_change = 0.0;  ///< relative loss of a pixel's area per electron in it (a_00, negative in the literature)
-  double range = 2.0;        ///< pixels
+  double serial = 0.0;    ///< shift of a boundary between columns by an electron in a pixel next to it, px/e-; 0: none
+  double parallel = 0.0;  ///< the same of a boundary between rows
+  double decay = 0.5;     ///< of the shift with distance, 1/px
+  int range = 4;          ///< pixels
 
   friend bool operator==(const BrighterFatterSettings&, const BrighterFatterSettings&) = default;
 };
@@ -65,14 +74,16 @@ struct BrighterFatterSettings {
 /// Charge-transfer inefficiency.
 struct CtiSettings {
   CtiModel model = CtiModel::kNone;
-  double parallel = 0.0;                   ///< charge lost per transfer between rows (simple model)
+  double parallel = 0.0;                   ///< share of the charge lost per transfer between rows (simple model)
   double serial = 0.0;                     ///< and between columns
-  double beta = 0.37;                      ///< exponent of the volume of a charge cloud (trap model)
+  double beta = 0.37;                      ///< exponent of the volume of a charge packet (trap model)
   double temperature = 203.0;              ///< K
   Seconds row_time{0.0007718};             ///< time that charge stays in one row
+  Seconds column_time{3.4e-7};             ///< and in one element of the register
   std::vector<double> trap_density;        ///< per pixel, one for each species
+  std::vector<double> register_density;    ///< the same in the register; empty: none
   std::vector<double> trap_cross_section;  ///< m²
-  std::vector<double> release_time;        ///< s
+  std::vector<double> trap_release_time;   ///< s
 
   friend bool operator==(const CtiSettings&, const CtiSettings&) = default;
 };
@@ -82,13 +93,13 @@ struct NodeSettings {
   int count = 1;                     ///< 1, 2 or 4
   std::vector<double> gain_factor;   ///< of each, relative to the gain
   std::vector<double> noise_factor;  ///< of each, relative to the readout noise
-  double cross_talk = 0.0;           ///< of one node's signal into the others
+  double cross_talk = 0.0;           ///< share of one node's signal that the others gain
 
   friend bool operator==(const NodeSettings&, const NodeSettings&) = default;
 };
 
 struct ElectronicsSettings {
-  std::vector<double> nonlinearity;  ///< a0, a1, a2 of ADU' = ADU + a0 + a1 ADU + a2 ADU²
+  std::vector<double> nonlinearity;  ///< a0, a1, a2 of ADU' = ADU + a0 + a1 ADU + a2 ADU²; none: linear
   double gain_drift = 0.0;           ///< relative, amplitude over one period
   double bias_drift = 0.0;           ///< ADU, amplitude over one period
   Seconds drift_period{86400.0};
@@ -109,6 +120,7 @@ struct BadPixelSettings {
 struct CcdSettings {
   int columns = 0, rows = 0;
   PixelScale pixel_scale{15.0};
+  double pixel_size = 18.0;           ///< micrometres
   std::string projection = "TAN";     ///< a zenithal projection of FITS WCS
   double axis_x = 0.0, axis_y = 0.0;  ///< pixel where the optical axis falls; default the centre
   bool has_sub_field = false;

@@ -1,6 +1,8 @@
 // How the ground measures.
 #pragma once
 
+#include <vector>
+
 #include "astroid/core/units.hpp"
 
 namespace astroid {
@@ -12,8 +14,10 @@ enum class BiasSource { kKnown, kPrescan };
 /// What is taken out of an image before it is measured.
 struct CalibrationSettings {
   BiasSource bias = BiasSource::kKnown;
-  bool smearing = false;      ///< by the parallel overscan
-  bool nonlinearity = false;  ///< by the inverse of the known polynomial
+  bool smearing = false;                          ///< by the parallel overscan
+  bool nonlinearity = false;                      ///< by the inverse of the believed polynomial
+  std::vector<double> nonlinearity_coefficients;  ///< believed a0, a1, a2; none: those of the detector
+  bool gain = true;                               ///< of each node, instead of the mean one
 
   friend bool operator==(const CalibrationSettings&, const CalibrationSettings&) = default;
 };
@@ -26,8 +30,6 @@ struct PhotometrySettings {
   BackgroundMethod background = BackgroundMethod::kLocal;
   Pixels annulus_inner{5.0}, annulus_outer{8.0};
   int mesh = 64;
-  bool subtract_bias = true;
-  bool apply_gain = true;
   Magnitude target_limit{99.0};  ///< stars brighter than this are targets
   CalibrationSettings calibration;
 

@@ -19,10 +19,15 @@ struct BreathingSettings {
   friend bool operator==(const BreathingSettings&, const BreathingSettings&) = default;
 };
 
-/// Sensitivity within a pixel, the same in every pixel: 1 at its centre, lower towards its edges.
+enum class IntraPixelProfile { kEdge, kCosine, kGaussian };
+
+/// Sensitivity within a pixel, relative to the pixel's mean: highest at its centre, lower towards its edges.
 struct IntraPixelSettings {
+  IntraPixelProfile profile = IntraPixelProfile::kEdge;
   double depth = 0.0;  ///< relative loss at the edge; 0: none
-  Pixels width{0.1};   ///< of the zone along the edge in which it falls
+  Pixels width{0.1};   ///< of the zone along the edge in which it is lost (edge profile)
+  int cells = 10;      ///< per pixel and axis, in each of which sensitivity is constant
+  double flat = 0.0;   ///< rms of the cells' own sensitivity, different in every pixel; 0: all pixels are alike
 
   friend bool operator==(const IntraPixelSettings&, const IntraPixelSettings&) = default;
 };

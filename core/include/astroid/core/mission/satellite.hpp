@@ -8,7 +8,6 @@
 namespace astroid {
 
 enum class JitterModel { kNone, kRedNoise, kFile, kSpectrum };
-enum class DriftModel { kNone, kLinear, kThermoElastic };
 
 struct JitterSettings {
   JitterModel model = JitterModel::kNone;
@@ -21,18 +20,17 @@ struct JitterSettings {
   friend bool operator==(const JitterSettings&, const JitterSettings&) = default;
 };
 
-/// Slow motion of the lines of sight.
+/// Slow motion of the line of sight, which begins anew in each quarter.
 struct DriftSettings {
-  DriftModel model = DriftModel::kNone;
-  Arcseconds yaw, pitch, roll;  ///< linear: per day; thermo-elastic: peak to peak in one quarter
+  Arcseconds yaw, pitch, roll;                 ///< thermo-elastic: bound of the excursion within a quarter
+  Arcseconds yaw_rate, pitch_rate, roll_rate;  ///< linear: per day
 
   friend bool operator==(const DriftSettings&, const DriftSettings&) = default;
 };
 
-/// The spacecraft turns about its axis once a quarter, and does not come back exactly.
+/// Rms of the pointing error of each quarter but the first.
 struct RepointingSettings {
-  double quarter_days = 0.0;    ///< length of a quarter; 0: never
-  Arcseconds yaw, pitch, roll;  ///< rms of the pointing error of each quarter
+  Arcseconds yaw, pitch, roll;
 
   friend bool operator==(const RepointingSettings&, const RepointingSettings&) = default;
 };
@@ -41,6 +39,7 @@ struct SatelliteSettings {
   Degrees ra, dec, roll;  ///< of the optical axis
   JitterSettings jitter;
   DriftSettings drift;
+  double quarter_days = 90.0;  ///< after which the spacecraft is pointed anew; 0: never
   RepointingSettings repointing;
   bool aberration = false;  ///< differential kinematic aberration, relative to the start of the run
 

@@ -1,0 +1,31 @@
+#include "effects/aberration_effect.hpp"
+
+#include "astroid/sim/aberration.hpp"
+#include "astroid/sim/scene.hpp"
+#include "effects/displacement_need.hpp"
+
+namespace astroid {
+
+EffectNeed AberrationEffect::is_needed(const SceneSummary& scene) const {
+  if (!scene.mission->satellite.aberration) return {false, "aberration is left out by the configuration", 0.0, 0.0};
+  EffectNeed need = displacement_need(scene, scene.aberration_px, "aberration");
+  const double flux = scene.brightest_target_electrons;
+  const double fastest = scene.psf.gradient * scene.aberration_px_per_second * flux;  // e- per second
+  // Of the tolerance; conditions are those of the middle of an epoch, so they are off by half of it.
+  constexpr double kShare = 0.3;
+  if (need.needed && fastest > 0.0) need.steady = Seconds(2.0 * kShare * scene.flux_tolerance(flux) / fastest);
+  return need;
+}
+
+void AberrationEffect::set_conditions(const Scene& scene, Seconds time, Conditions& conditions) const {
+  constexpr double kSecondsPerDay = 86400.0;
+  const double start = scene.mission().simulation.start_mjd;
+  const Velocity at_start = spacecraft_velocity(start);
+  const Velocity now = spacecraft_velocity(start + time.value() / kSecondsPerDay);
+  for (std::size_t i = 0; i < now.size(); ++i) conditions.velocity[i] = now[i] - at_start[i];
+}
+
+void AberrationEffect::apply(ExposureState& /*state*/, const EffectContext& /*context*/, const Strip& /*strip*/) const {
+}
+
+}  // namespace astroid

@@ -1,0 +1,63 @@
+#include "effects/variable_stars.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <iterator>
+#include <span>
+#include <vector>
+
+#include "astroid/sim/plan.hpp"
+#include "astroid/sim/scene.hpp"
+#include "effects/star_light.hpp"
+#include "star_lists.hpp"
+
+namespace astroid {
+
+EffectNeed VariableStars::is_needed(const SceneSummary& scene) const {
+  if (scene.variable_stars == 0) return {false, "no star on the detector varies", 0.0, 0.0};
+  // A variable star may lie in the mask of any target.
+  const double tolerance = scene.tightest_tolerance();
+  return {scene.largest_variation > tolerance,
+          fmt::format("{} stars vary, by up to {:.4g} e- per exposure; the tightest flux tolerance is {:.3g} e-",
+                      scene.variable_stars, scene.largest_variation, tolerance),
+          scene.largest_variation, 0.0};
+}
+
+void VariableStars::prepare(CameraState& camera, const PrepareContext& context) const {
+  if (!context.knobs.variables) return;
+  std::vector<Rectangle> areas;
+  for (const Strip& strip : camera.strips) areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
+  auto lists = star_lists(context.scene, context.knobs, areas, farthest_attitude(context), StarChoice::kVariable);
+  auto list = lists.begin();
+  for (const Strip& strip : camera.strips) {
+    const auto end = list + static_cast<std::ptrdiff_t>(strip.areas.size());
+    camera.variables.emplace_back(std::move_iterator(list), std::move_iterator(end));
+    list = end;
+  }
+}
+
+void VariableStars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
+  if (!context.knobs.variables) return;  // they shine among the others, constantly
+  const Scene& scene = context.scene;
+  const PixelPsf& psf = scene.psf();
+  const double half = 0.5 * scene.mission().simulation.exposure_time.value();
+  const double middle = scene.mid_time(state.exposure).value();
+  // The maps of a polynomial hold the constant stars; of these, the motion about the mean broadens the image.
+  const JitterTreatment jitter =
+      context.knobs.jitter == JitterTreatment::kPolynomial ? JitterTreatment::kBroadened : context.knobs.jitter;
+  const std::span<const Strip> strips = context.camera.strips;
+  const auto number = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin) - strips.begin();
+  const auto& lists = context.camera.variables[static_cast<std::size_t>(number)];
+  for (std::size_t a = 0; a < lists.size(); ++a) {
+    if (lists[a].empty()) continue;
+    const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(strip, a);
+    for (RenderedStar star : lists[a]) {
+      const Variability& variability = scene.variables()[static_cast<std::size_t>(star.variability)].variability;
+      star.electrons *= variability.mean(middle - half, middle + half);
+      for_each_light(star, state, jitter, [&](const StarLight& light) { psf.add_star(light, view, state.scratch); });
+    }
+  }
+}
+
+}  // namespace astroid

@@ -1,0 +1,121 @@
+#include "plan_motion.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "astroid/core/math.hpp"
+#include "plan_cost.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr double kReach = 4.5;  // rms of the jitter in one cell: others are seldom needed
+
+/// Displacement of any star by one unit of each axis, px.
+AttitudeReach per_arcsec(const Scene& scene) {
+  AttitudeReach reach;
+  for (const SceneStar& star : scene.stars()) {
+    const AttitudeJacobian& j = star.motion;
+    reach.yaw = std::max(reach.yaw, det::hypot(j.dx_dyaw, j.dy_dyaw));
+    reach.pitch = std::max(reach.pitch, det::hypot(j.dx_dpitch, j.dy_dpitch));
+    reach.roll = std::max(reach.roll, det::hypot(j.dx_droll, j.dy_droll));
+  }
+  return reach;
+}
+
+/// A polynomial and what it costs.
+struct Candidate {
+  AttitudePolynomial polynomial;
+  double left_out = 0.0;                                     ///< bound on what it neglects, relative
+  double seconds = std::numeric_limits<double>::infinity();  ///< an exposure, its share of making the cells included
+};
+
+/// Cells that hold the jitter and a part of the drift's extent.
+Candidate with_part(const Scene& scene, const Plan& plan, const AttitudeReach& unit, double part, double allowed) {
+  constexpr std::size_t kMostTerms = 24;
+  constexpr double kMostBytes = 512.0 * 1024.0 * 1024.0;  // of a detector's maps
+  const AttitudeVariance variance = scene.attitude().variance();
+  const Attitude jitter{kReach * det::sqrt(variance.yaw), kReach * det::sqrt(variance.pitch),
+                        kReach * det::sqrt(variance.roll)};
+  const Attitude& drift = scene.attitude_trend().farthest();
+  Candidate candidate;
+  Attitude& scale = candidate.polynomial.scale;
+  scale = {jitter.yaw + part * drift.yaw, jitter.pitch + part * drift.pitch, jitter.roll + part * drift.roll};
+  const bool holds_drift = (drift.yaw == 0.0 || scale.yaw > 0.0) && (drift.pitch == 0.0 || scale.pitch > 0.0) &&
+                           (drift.roll == 0.0 || scale.roll > 0.0);
+  if (!holds_drift) return candidate;
+  // Where the drift has brought an exposure to the border of its cell, the motion within it reaches beyond.
+  const double beyond = scene.attitude_trend().is_still() ? 0.0 : kReach * scene.summary().attitude_rms_in_exposure_px;
+  const AttitudeReach reach{unit.yaw * scale.yaw + (scale.yaw > 0.0 ? beyond : 0.0),
+                            unit.pitch * scale.pitch + (scale.pitch > 0.0 ? beyond : 0.0),
+                            unit.roll * scale.roll + (scale.roll > 0.0 ? beyond : 0.0)};
+  std::vector<AttitudePowers>& terms = candidate.polynomial.terms;
+  terms = choose_attitude_terms(scene.summary().psf.derivatives, reach, allowed, kMostTerms, candidate.left_out);
+  const auto pixels = static_cast<double>(scene.detector().size());
+  if (terms.empty() || maps_bytes(terms.size(), pixels) > kMostBytes) return candidate;
+  // The cells along the drift, each entered once: borders that are crossed in several axes count for each.
+  const auto entered = [](double extent, double half_width) { return half_width > 0.0 ? extent / half_width : 0.0; };
+  const double cells =
+      scene.attitude_trend().is_still()
+          ? 0.0
+          : 1.0 + entered(drift.yaw, scale.yaw) + entered(drift.pitch, scale.pitch) + entered(drift.roll, scale.roll);
+  Plan once = plan;
+  once.knobs.jitter = JitterTreatment::kShift;
+  const double share =
+      cells * static_cast<double>(terms.size()) / static_cast<double>(scene.mission().simulation.exposures);
+  candidate.seconds = maps_seconds(terms.size(), pixels) + share * full_frame_seconds(once, scene);
+  return candidate;
+}
+
+}  // namespace
+
+void plan_jitter(const Scene& scene, double share, Plan& plan) {
+  const SceneSummary& s = scene.summary();
+  const double flux = s.brightest_target_electrons;
+  plan.knobs.jitter = JitterTreatment::kShift;
+  if (!(flux > 0.0)) return;
+  // The mean position of an exposure is a random quantity: an error of it that is small against the exposure's own
+  // noise with all cameras, which it does not share, changes no statistics.
+  const double noise = det::sqrt(kVarianceTolerance * s.relative_variance_in_bin(flux) * s.exposures_per_bin);
+  const double first_order = s.psf.gradient * s.attitude_rms_px;
+  plan.knobs.attitude_steps = scene.attitude().steps_for(first_order > 0.0 ? noise / first_order : 1.0);
+
+  const double allowed = share * s.flux_tolerance(flux) / flux;  // relative
+  // Both axes: half the curvature times the variance of the motion, and what the next order leaves of it.
+  const double second_order = s.psf.curvature * s.attitude_rms_in_exposure_px * s.attitude_rms_in_exposure_px;
+  const double fourth_order = second_order * second_order;
+  if (second_order <= allowed) {
+    plan.jitter_error = flux * second_order;
+  } else if (fourth_order <= allowed) {
+    plan.knobs.jitter = JitterTreatment::kBroadened;
+    plan.jitter_error = flux * fourth_order;
+  } else {
+    plan.knobs.jitter = JitterTreatment::kSubSteps;
+    plan.jitter_error = flux * second_order / plan.knobs.attitude_steps;
+  }
+}
+
+void plan_polynomial(const Scene& scene, double share, Plan& plan) {
+  const SceneSummary& s = scene.summary();
+  const double flux = s.brightest_target_electrons;
+  if (!(flux > 0.0)) return;
+  const double allowed = share * s.flux_tolerance(flux) / flux;
+  const AttitudeReach unit = per_arcsec(scene);
+  // The wider a cell, the fewer are made along the drift, and the more terms each needs.
+  constexpr double kSmallestPart = 1e-4;
+  Candidate best = with_part(scene, plan, unit, 0.0, allowed);
+  if (!scene.attitude_trend().is_still())
+    for (double part = 1.0; part > kSmallestPart; part *= 0.5) {
+      Candidate candidate = with_part(scene, plan, unit, part, allowed);
+      if (candidate.seconds < best.seconds) best = std::move(candidate);
+    }
+  if (!(best.seconds <= full_frame_seconds(plan, scene))) return;
+  plan.knobs.jitter = JitterTreatment::kPolynomial;
+  plan.knobs.polynomial = std::move(best.polynomial);
+  plan.jitter_error = flux * best.left_out;
+}
+
+}  // namespace astroid

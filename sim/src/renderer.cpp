@@ -1,0 +1,109 @@
+#include "astroid/sim/renderer.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace astroid {
+
+namespace {
+
+constexpr double kPsfShare = 0.4;     ///< of the accuracy, see AccuracyShares
+constexpr double kSplineShare = 0.1;  ///< of that, for a Gaussian as a table
+
+[[noreturn]] void refuse(const Mission& mission, const char* expected, const char* message) {
+  throw InputError(Problem{.parameter = "Simulation/Renderer",
+                           .value = std::string(to_string(mission.simulation.renderer)),
+                           .expected = expected,
+                           .message = message});
+}
+
+/// Whether the PSF can be had as a table or as a spectrum.
+bool is_tabular(const Mission& mission) {
+  return mission.psf.model == PsfModel::kGaussian || mission.psf.model == PsfModel::kTable;
+}
+
+PsfTable psf_table(const Mission& mission) {
+  const double accuracy = kSplineShare * kPsfShare * 1e-6 * mission.simulation.accuracy.value();
+  return mission.psf.model == PsfModel::kGaussian ? make_gaussian_table(mission.psf.sigma.value(), accuracy)
+                                                  : read_psf_table(mission.psf.file);
+}
+
+}  // namespace
+
+std::string_view to_string(Renderer renderer) {
+  switch (renderer) {
+    case Renderer::kAuto:
+      return "auto";
+    case Renderer::kAnalytic:
+      return "analytic";
+    case Renderer::kPrf:
+      return "prf";
+    case Renderer::kSubPixel:
+      return "subpixel";
+  }
+  return "?";
+}
+
+bool has_intra_pixel_response(const Mission& mission) {
+  const IntraPixelSettings& s = mission.psf.intra_pixel;
+  return std::max(common_response(s).depth(), s.flat) > 1e-6 * mission.simulation.accuracy.value();
+}
+
+PixelResponse common_response(const IntraPixelSettings& settings) {
+  switch (settings.profile) {
+    case IntraPixelProfile::kEdge:
+      return edge_response(settings.cells, settings.depth, settings.width.value());
+    case IntraPixelProfile::kCosine:
+      return cosine_response(settings.cells, settings.depth);
+    case IntraPixelProfile::kGaussian:
+      return gaussian_response(settings.cells, settings.depth);
+  }
+  return {};
+}
+
+RendererChoice choose_renderer(const Mission& mission) {
+  const bool gaussian = mission.psf.model == PsfModel::kGaussian;
+  const bool response = has_intra_pixel_response(mission);
+  const bool differs = response && mission.psf.intra_pixel.flat > 0.0;
+  if (response && !is_tabular(mission))
+    refuse(mission, "a Gaussian or a table as PSF",
+           "sensitivity within the pixel is known for a Gaussian or a tabulated PSF only");
+  switch (mission.simulation.renderer) {
+    case Renderer::kAuto:
+      if (differs) return {Renderer::kSubPixel, "sensitivity within the pixel differs from pixel to pixel"};
+      if (response) return {Renderer::kPrf, "sensitivity within the pixel, the same in all, is part of the PSF"};
+      if (gaussian) return {Renderer::kAnalytic, "a Gaussian is integrated over pixels exactly"};
+      return {Renderer::kPrf, "the PSF is no Gaussian"};
+    case Renderer::kAnalytic:
+      if (!gaussian) refuse(mission, "auto, prf or subpixel", "only a Gaussian PSF has a closed form");
+      if (response) refuse(mission, "auto, prf or subpixel", "sensitivity varies within the pixel");
+      break;
+    case Renderer::kPrf:
+      if (differs) refuse(mission, "auto or subpixel", "sensitivity within the pixel differs from pixel to pixel");
+      break;
+    case Renderer::kSubPixel:
+      if (!is_tabular(mission)) refuse(mission, "auto or prf", "the sub-pixel map takes a Gaussian or a table as PSF");
+      break;
+  }
+  return {mission.simulation.renderer, "the configuration says so"};
+}
+
+std::shared_ptr<const PixelPsf> make_recorded_psf(const Mission& mission, std::shared_ptr<const PixelPsf> optical) {
+  const bool gaussian = mission.psf.model == PsfModel::kGaussian;
+  const bool library = choose_renderer(mission).renderer == Renderer::kPrf && gaussian;
+  if (!library && !has_intra_pixel_response(mission)) return optical;
+  return make_prf_psf(psf_table(mission), kPsfShare * 1e-6 * mission.simulation.accuracy.value(), mission.psf.phases,
+                      has_intra_pixel_response(mission) ? common_response(mission.psf.intra_pixel) : PixelResponse{});
+}
+
+std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& mission, double accuracy, double tight) {
+  const bool gaussian = mission.psf.model == PsfModel::kGaussian;
+  const SubPixelSettings settings{.accuracy = gaussian ? std::min(accuracy, tight) : accuracy,
+                                  .sub_pixels = mission.simulation.sub_pixels,
+                                  .cells = has_intra_pixel_response(mission) ? mission.psf.intra_pixel.cells : 1};
+  return std::make_shared<const SubPixelRenderer>(gaussian ? make_gaussian_spectrum(mission.psf.sigma.value())
+                                                           : make_table_spectrum(read_psf_table(mission.psf.file)),
+                                                  Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
+}
+
+}  // namespace astroid
