@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <vector>
 
 #include "program.hpp"
 #include "small_mission.hpp"
@@ -22,13 +23,13 @@ Ratio noise_ratio(const std::filesystem::path& folder) {
   const auto table = test::read_csv(folder / "analysis/targets.csv");
   Ratio ratio;
   double squares = 0.0;
-  const auto cell = [&](std::size_t row, const char* name) {
-    return table.number(row, table.column(name).value()).value_or(std::nan(""));
-  };
+  const std::vector<double> all_predicted = table.numbers("nsr_exposure");
+  const std::vector<double> all_measured = table.numbers("nsr_exposure_measured");
+  const std::vector<double> all_errors = table.numbers("nsr_exposure_measured_err");
   for (std::size_t row = 0; row < table.rows(); ++row) {
-    const double predicted = cell(row, "nsr_exposure");
-    const double measured = cell(row, "nsr_exposure_measured") / predicted;
-    const double error = cell(row, "nsr_exposure_measured_err") / predicted;
+    const double predicted = all_predicted[row];
+    const double measured = all_measured[row] / predicted;
+    const double error = all_errors[row] / predicted;
     if (!std::isfinite(measured) || !(error > 0.0)) continue;  // saturated
     // A plain mean: stars that happen to be quiet state a small error.
     ratio.value += measured;
