@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/column_light.hpp"
 #include "astroid/core/throughput.hpp"
 #include "astroid/sim/scene.hpp"
@@ -35,9 +36,15 @@ StarLight smeared_star(const Scene& scene, const SceneStar& star, double share) 
           .half_width = scene.psf().stamp_half_width(std::clamp(allowed, kSmallestLoss, kLargestLoss))};
 }
 
+/// Sky and stray light of one pixel, e- per exposure.
+double sky_of_pixel(const Mission& mission) {
+  return (mean_background_rate(mission) * mission.simulation.exposure_time).value();
+}
+
+/// Before the optics take their part, which the conditions know.
 double smeared_sky(const Scene& scene) {
   const Mission& mission = scene.mission();
-  return share_of(scene) * mission.ccd.rows * (mission.field.sky_background * mission.simulation.exposure_time).value();
+  return share_of(scene) * mission.ccd.rows * sky_of_pixel(mission) / mean_throughput(mission);
 }
 
 }  // namespace
@@ -152,8 +159,7 @@ double brightest_column_bound(const Scene& scene) {
     }
     highest = std::max(highest, sum);
   }
-  const Mission& mission = scene.mission();
-  return highest + mission.ccd.rows * (mission.field.sky_background * mission.simulation.exposure_time).value();
+  return highest + scene.mission().ccd.rows * sky_of_pixel(scene.mission());
 }
 
 }  // namespace astroid
