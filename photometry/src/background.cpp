@@ -43,7 +43,7 @@ int cell_edge(std::size_t i, std::size_t n, int pixels) {
 }
 
 bool usable(float counts, std::uint8_t flags) {
-  return (flags & ~unsigned{pixel_flag::kTruth}) == 0 && std::isfinite(counts);
+  return (flags & ~pixel_flag::kTruth) == 0 && std::isfinite(counts);
 }
 
 double median_of(std::vector<double> values) {

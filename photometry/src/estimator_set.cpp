@@ -41,7 +41,7 @@ double plain_sum(std::span<const std::uint32_t> pixel, const float* counts) {
 
 /// A flag without what only the simulation knows.
 constexpr std::uint8_t seen(unsigned flag) {
-  return static_cast<std::uint8_t>(flag & ~unsigned{pixel_flag::kTruth});
+  return static_cast<std::uint8_t>(flag & ~pixel_flag::kTruth);
 }
 
 std::uint8_t any_flag(std::span<const std::uint32_t> pixel, const std::uint8_t* flags) {

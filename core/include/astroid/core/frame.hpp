@@ -18,7 +18,7 @@ inline constexpr std::uint8_t kBad = 4;           ///< defective, masked or not 
 inline constexpr std::uint8_t kShortRamp = 8;     ///< fitted to the reads before it saturated: noisier, not wrong
 inline constexpr std::uint8_t kCosmicRay = 16;    ///< a particle left charge here
 /// What only the simulation knows: photometry takes no notice of these.
-inline constexpr std::uint8_t kTruth = kCosmicRay;
+inline constexpr unsigned kTruth = kCosmicRay;
 }  // namespace pixel_flag
 
 /// What a FITS header says of an exposure.
