@@ -38,15 +38,15 @@ std::string to_text(const Plan& plan, const Scene& scene) {
   for (const PlannedEffect& planned : plan.effects) {
     const EffectSpec& spec = planned.effect->spec();
     const double ms = kMilli * planned.seconds;
-    out += fmt::format("  {:<3} {:<14} {:<12} {}\n", planned.need.needed ? "on" : "off", spec.name,
+    out += fmt::format("  {:<3} {:<23} {:<11} {}\n", planned.need.needed ? "on" : "off", spec.name,
                        to_string(spec.level), planned.need.why);
     if (planned.need.needed) {
       if (ms > 0.0)
-        out += fmt::format("      {:<27} about {:.2g} ms per exposure\n", "", ms);
+        out += fmt::format("      {:<35} about {:.2g} ms per exposure\n", "", ms);
       else if (recalled && spec.level > EffectLevel::kPointing && spec.level <= EffectLevel::kPixelMean)
-        out += fmt::format("      {:<27} computed once, with the noiseless image\n", "");
+        out += fmt::format("      {:<35} computed once, with the noiseless image\n", "");
     } else if (planned.need.bias_bound > 0.0 || planned.need.variance_bound > 0.0) {
-      out += fmt::format("      {:<27} left out: at most {:.2g} e- of any flux and {:.2g} of its variance\n", "",
+      out += fmt::format("      {:<35} left out: at most {:.2g} e- of any flux and {:.2g} of its variance\n", "",
                          planned.need.bias_bound, planned.need.variance_bound);
     }
   }

@@ -72,22 +72,29 @@ void CrossTalk::apply(ExposureState& state, const EffectContext& context, const 
   const std::span<double> pixels = state.analog.pixels(strip);
   // Every node hears the others as they were.
   state.scratch.assign(pixels.begin(), pixels.end());
-  for (std::size_t a = 0; a < strip.areas.size(); ++a) {
-    const auto view = state.analog.view(strip, a);
-    const Rectangle& area = view.area();
+  // Nothing after this depends on other pixels than its own, so the delivered ones are enough. Effects before it may
+  // have made the regions larger, with margins that are not right, but left them where support() put them.
+  const std::span<const Rectangle> delivered = context.scene.layout()->exposed_regions();
+  std::vector<Rectangle> asked(delivered.begin(), delivered.end());
+  support(context.scene, asked);
+  const bool whole = strip.areas.front() == detector;
+  for (std::size_t r = 0; r < delivered.size(); ++r) {
+    const Rectangle& area = delivered[r];
+    const auto view = state.analog.view(strip, whole ? 0 : r);
     for (const Mirror& mirror : mirrors) {
       const Rectangle other = mirrored(area, detector, mirror);
-      const auto source =
-          std::ranges::find_if(strip.areas, [&](const Rectangle& region) { return holds(region, other); });
-      if (source == strip.areas.end()) continue;  // computed for its own sake only
-      const std::size_t begin = strip.area_begins[static_cast<std::size_t>(source - strip.areas.begin())] - strip.begin;
+      const auto found = std::ranges::find_if(asked, [&](const Rectangle& region) { return holds(region, other); });
+      const std::size_t from = whole ? 0 : static_cast<std::size_t>(found - asked.begin());
+      const Rectangle& source = strip.areas[from];
+      ASTROID_CHECK_EQ(holds(source, other), true);
+      const std::size_t begin = strip.area_begins[from] - strip.begin;
       for (int y = area.y0; y < area.y1(); ++y) {
         const int y_other = mirror.y ? detector.y0 + detector.y1() - 1 - y : y;
         const double* row = state.scratch.data() + begin +
-                            static_cast<std::size_t>(y_other - source->y0) * static_cast<std::size_t>(source->nx);
+                            static_cast<std::size_t>(y_other - source.y0) * static_cast<std::size_t>(source.nx);
         for (int x = area.x0; x < area.x1(); ++x) {
           const int x_other = mirror.x ? detector.x0 + detector.x1() - 1 - x : x;
-          view.row(y)[static_cast<std::size_t>(x - area.x0)] += share * row[x_other - source->x0];
+          view.at(x, y) += share * row[x_other - source.x0];
         }
       }
     }

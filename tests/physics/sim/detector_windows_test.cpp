@@ -100,47 +100,60 @@ TEST_P(DetectorWindows, HaveTheBitsOfTheFullFrame) {
 
 INSTANTIATE_TEST_SUITE_P(
     Effects, DetectorWindows,
-    testing::Values(Case{"Blooming", [](Mission&) {}},
-                    Case{"BloomingOnChargeInjection",
-                         [](Mission& m) {
-                           m.ccd.charge_injection = {.every_rows = 20, .first_row = 5, .level = Electrons(2e4)};
-                         }},
-                    Case{"SimpleCti",
-                         [](Mission& m) {
-                           m.ccd.cti.model = CtiModel::kSimple;
-                           m.ccd.cti.parallel = 3e-4;
-                           m.ccd.cti.serial = 2e-4;
-                         }},
-                    Case{"SerialCtiAlone",
-                         [](Mission& m) {
-                           m.ccd.cti.model = CtiModel::kSimple;
-                           m.ccd.cti.serial = 2e-3;
-                         }},
-                    Case{"SimpleCtiThroughTwoNodes",
-                         [](Mission& m) {
-                           m.ccd.cti.model = CtiModel::kSimple;
-                           m.ccd.cti.parallel = 1e-5;
-                           m.ccd.cti.serial = 2e-4;
-                           m.ccd.nodes.count = 2;
-                         }},
-                    Case{"Traps",
-                         [](Mission& m) {
-                           m.ccd.cti.model = CtiModel::kTraps;
-                           m.ccd.cti.trap_density = {4.9, 6.62};
-                           m.ccd.cti.register_density = {0.5, 0.1};
-                           m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
-                           m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
-                         }},
-                    Case{"Everything",
-                         [](Mission& m) {
-                           m.ccd.flat_field.rms = 0.01;
-                           m.ccd.charge_injection = {.every_rows = 30, .first_row = 5, .level = Electrons(2e3)};
-                           m.ccd.cosmic_rays.rate = 200.0;
-                           m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 4e-7, .decay = 0.5, .range = 3};
-                           m.ccd.cti.model = CtiModel::kSimple;
-                           m.ccd.cti.parallel = 1e-5;
-                           m.ccd.cti.serial = 1e-5;
-                         }}),
+    testing::Values(
+        Case{"Blooming", [](Mission&) {}},
+        Case{"BloomingOnChargeInjection",
+             [](Mission& m) { m.ccd.charge_injection = {.every_rows = 20, .first_row = 5, .level = Electrons(2e4)}; }},
+        Case{"SimpleCti",
+             [](Mission& m) {
+               m.ccd.cti.model = CtiModel::kSimple;
+               m.ccd.cti.parallel = 3e-4;
+               m.ccd.cti.serial = 2e-4;
+             }},
+        Case{"SerialCtiAlone",
+             [](Mission& m) {
+               m.ccd.cti.model = CtiModel::kSimple;
+               m.ccd.cti.serial = 2e-3;
+             }},
+        Case{"SimpleCtiThroughTwoNodes",
+             [](Mission& m) {
+               m.ccd.cti.model = CtiModel::kSimple;
+               m.ccd.cti.parallel = 1e-5;
+               m.ccd.cti.serial = 2e-4;
+               m.ccd.nodes.count = 2;
+             }},
+        Case{"Traps",
+             [](Mission& m) {
+               m.ccd.cti.model = CtiModel::kTraps;
+               m.ccd.cti.trap_density = {4.9, 6.62};
+               m.ccd.cti.register_density = {0.5, 0.1};
+               m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
+               m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
+             }},
+        Case{"Everything",
+             [](Mission& m) {
+               m.ccd.flat_field.rms = 0.01;
+               m.ccd.charge_injection = {.every_rows = 30, .first_row = 5, .level = Electrons(2e3)};
+               m.ccd.cosmic_rays.rate = 200.0;
+               m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 4e-7, .decay = 0.5, .range = 3};
+               m.ccd.cti.model = CtiModel::kSimple;
+               m.ccd.cti.parallel = 1e-5;
+               m.ccd.cti.serial = 1e-5;
+               m.ccd.nodes = {.count = 2, .gain_factor = {1.02, 0.97}, .noise_factor = {1.1, 0.9}, .cross_talk = 1e-3};
+               m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(4.0)};
+               m.ccd.bad_pixels.dead = m.ccd.bad_pixels.hot = 0.01;
+               m.ccd.electronics.nonlinearity = {0.0, -0.0042789409, 2.365e-7};
+               m.ccd.electronics.bias_drift = 3.0;
+               m.ccd.electronics.gain_drift = 1e-3;
+               m.ccd.electronics.row_offset = 2.0;
+               m.ccd.pixel_scale = PixelScale(100.0);
+               m.telescope.vignetting.model = VignettingModel::kCosineSquared;
+               m.telescope.ghosts = {.fraction = 1e-3, .radius = Pixels(20.0), .brighter_than = Magnitude(30.0)};
+               m.psf.breathing = {.amplitude = Pixels(0.1), .period = Seconds(900.0)};
+               m.field.stray_light = {ElectronsPerSecond(9.0), 0.5, -0.5};
+               m.satellite.jitter.model = JitterModel::kRedNoise;
+               m.satellite.jitter.yaw = m.satellite.jitter.pitch = Arcseconds(4.0);
+             }}),
     [](const testing::TestParamInfo<Case>& parameter) { return parameter.param.name; });
 
 }  // namespace

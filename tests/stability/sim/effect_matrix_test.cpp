@@ -6,12 +6,12 @@
 #include <cmath>
 #include <functional>
 #include <memory>
-#include <random>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "astroid/core/distributions.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "astroid/test/scenes.hpp"
 
@@ -163,8 +163,11 @@ struct Combination {
 };
 
 Combination combination(std::uint32_t number) {
-  std::mt19937 random(number);
-  const auto uniform = [&](double low, double high) { return std::uniform_real_distribution(low, high)(random); };
+  const RandomStream stream = make_stream(1, StreamId{number}, 0, 0);
+  std::uint64_t drawn = 0;
+  const auto uniform = [&](double low, double high) {
+    return low + (high - low) * uniform_at_step(stream, {.step = drawn++});
+  };
   const auto side = [&] { return static_cast<int>(std::exp(uniform(0.0, std::log(90.0)))); };
   Combination c{.mission = test::bare_mission(side() + 8, side() + 8), .stars = {}, .name = {}};
   c.mission.simulation.seed = number;

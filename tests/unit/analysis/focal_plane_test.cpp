@@ -5,7 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <random>
+
+#include "astroid/core/distributions.hpp"
 
 namespace astroid {
 namespace {
@@ -35,13 +36,15 @@ TEST(FocalPlaneSurface, FindsAQuadraticExactly) {
 }
 
 TEST(FocalPlaneSurface, ErrorsCoverWhatTheyShould) {
-  std::mt19937 random(7);
-  std::normal_distribution<double> normal(0.0, 0.5);
+  constexpr double kSigma = 0.5;
+  const RandomStream stream = make_stream(7, StreamId{1}, 0, 0);
+  std::uint64_t drawn = 0;
+  const auto normal = [&] { return kSigma * normal_at_step(stream, {.step = drawn++}); };
   int inside = 0;
   constexpr int kTrials = 2000;
   for (int trial = 0; trial < kTrials; ++trial) {
     const FocalPlaneSurface surface(grid(
-                                        5, [&](double x, double y) { return quadratic(x, y) + normal(random); }, 0.5),
+                                        5, [&](double x, double y) { return quadratic(x, y) + normal(); }, kSigma),
                                     kDetector);
     const FocalPlaneValue at = surface(700.0, 200.0);
     inside += std::abs(at.value - quadratic(700.0, 200.0)) < at.error ? 1 : 0;
