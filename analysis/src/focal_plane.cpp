@@ -13,7 +13,6 @@ namespace astroid {
 
 namespace {
 
-constexpr double kMillimagnitudes = 1000.0;
 constexpr double kTwoSigma = 1.96;  // half a 95 % interval of a normal distribution
 
 /// The noise at the reference magnitude from that of stars near it.
@@ -53,13 +52,13 @@ SubFieldMetrics sub_field_metrics(const Rectangle& area, std::span<const TargetM
   std::vector<double> measured_offsets;
   std::vector<double> measured;
   std::vector<double> spr;
-  std::vector<double> recovery;
+  std::vector<double> residual;
   for (const TargetMetrics& target : targets) {
     const double offset = target.mag - reference_magnitude;
     if (std::abs(offset) > kNearReference || !is_clean(target)) continue;
     ++metrics.clean;
     spr.push_back(target.spr_tot);
-    if (is_uncontaminated(target, setup)) recovery.push_back(kMillimagnitudes * target.causes.residual);
+    if (is_uncontaminated(target, setup)) residual.push_back(target.causes.residual);
     if (target.nsr_1h_ppm > 0.0) {
       offsets.push_back(offset);
       predicted.push_back(std::log(target.nsr_1h_ppm));
@@ -75,8 +74,8 @@ SubFieldMetrics sub_field_metrics(const Rectangle& area, std::span<const TargetM
   metrics.nsr_measured = at_reference(measured_offsets, measured);
   const MedianEstimate pollution = median_estimate(spr);
   metrics.spr = {pollution.value, pollution.half_width() / kTwoSigma};
-  const MeanEstimate difference = mean_estimate(recovery);
-  metrics.recovery_mmag = {difference.value, difference.error};
+  const MeanEstimate difference = mean_estimate(residual);
+  metrics.recovery = {difference.value, difference.error};
   return metrics;
 }
 

@@ -33,7 +33,7 @@ std::vector<Mapped> quantities(const FocalPlaneInput& input) {
   return {{"nsr_predicted", "Predicted " + noise, "ppm", &SubFieldMetrics::nsr_predicted},
           {"nsr_measured", "Measured " + noise, "ppm", &SubFieldMetrics::nsr_measured},
           {"spr", "Median stellar pollution ratio", "", &SubFieldMetrics::spr},
-          {"recovery", "Magnitude measured - true, unexplained part", "mmag", &SubFieldMetrics::recovery_mmag}};
+          {"recovery", "Magnitude measured - true, unexplained part", "mag", &SubFieldMetrics::recovery}};
 }
 
 FocalPlaneSurface surface_of(const FocalPlaneInput& input, const Mapped& quantity) {

@@ -19,8 +19,8 @@ void add_values(std::vector<Column<Row>>& columns) {
   add_value(columns, "nsr_measured_ppm", "ppm", "the same times measured over predicted noise within bins",
             &Row::nsr_measured);
   add_value(columns, "spr", "", "median of the neighbours' share of star light in the aperture", &Row::spr);
-  add_value(columns, "recovery_mmag", "mmag",
-            "mean of measured - true magnitude that contamination and aperture do not explain", &Row::recovery_mmag);
+  add_value(columns, "recovery", "mag",
+            "mean of measured - true magnitude that contamination and aperture do not explain", &Row::recovery);
 }
 
 template <class Row>

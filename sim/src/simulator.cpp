@@ -36,13 +36,10 @@ std::uint32_t stream_camera(const EffectSpec& spec, int camera) {
   return is_pointing(spec) ? 0U : static_cast<std::uint32_t>(camera) + 1U;
 }
 
-void fill_header(const Scene& scene, int camera, std::int64_t exposure, FrameHeader& header) {
-  const Mission& mission = scene.mission();
+/// What all exposures of a camera have in common.
+FrameHeader common_header(const Mission& mission, int camera) {
+  FrameHeader header;
   header.camera = camera;
-  header.exposure = exposure;
-  header.mid_time = scene.mid_time(exposure);
-  constexpr double kSecondsPerDay = 86400.0;
-  header.mid_mjd = mission.simulation.start_mjd + header.mid_time.value() / kSecondsPerDay;
   header.exposure_time = mission.simulation.exposure_time;
   header.gain = mission.ccd.gain;
   // Of a fitted ramp: the noise that the fit leaves, and the range of what is delivered.
@@ -52,6 +49,14 @@ void fill_header(const Scene& scene, int camera, std::int64_t exposure, FrameHea
   header.saturation = std::min(mission.ccd.full_well / mission.ccd.gain + mission.ccd.bias, top);
   if (ramp_noise(mission).reads > 1)
     header.saturation = std::min(Electrons(saturation_electrons(mission)) / mission.ccd.gain + mission.ccd.bias, top);
+  return header;
+}
+
+void set_time(const Scene& scene, std::int64_t exposure, FrameHeader& header) {
+  header.exposure = exposure;
+  header.mid_time = scene.mid_time(exposure);
+  constexpr double kSecondsPerDay = 86400.0;
+  header.mid_mjd = scene.mission().simulation.start_mjd + header.mid_time.value() / kSecondsPerDay;
 }
 
 }  // namespace
@@ -96,6 +101,10 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
   for (const Strip& strip : camera_.strips) longest_strip_ = std::max(longest_strip_, strip.size());
   if (attitude_ == nullptr) attitude_ = make_attitude_series(*scene_, *plan_);
   camera_.camera = camera;
+  varies_ = std::ranges::any_of(plan_->effects,
+                                [](const PlannedEffect& e) { return e.need.needed && makes_light(e.effect->spec()); });
+  constant_ = conditions_of(*plan_, *scene_, 0);
+  header_ = common_header(scene_->mission(), camera);
   for (const PlannedEffect& planned : plan_->effects) {
     const EffectSpec& spec = planned.effect->spec();
     streams_.push_back(make_stream(scene_->mission().simulation.seed, spec.id, stream_camera(spec, camera), 0));
@@ -105,7 +114,7 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
   }
   if (plan_->still) {
     still_ = std::make_shared<const StillImages>(kMostEpochs);
-    still_->get(0, [this] { return render({}, conditions_of(*plan_, *scene_, 0)); });
+    still_->get(0, [this] { return render({}, constant_); });
   }
   if (plan_->knobs.jitter == JitterTreatment::kPolynomial)
     moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial, plan_->layout->size());
@@ -114,11 +123,6 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
 
 Simulator::Source Simulator::source() const {
   return still_ != nullptr || moving_ != nullptr ? Source::kRecall : Source::kRender;
-}
-
-bool Simulator::varies() const {
-  return std::ranges::any_of(plan_->effects,
-                             [](const PlannedEffect& e) { return e.need.needed && makes_light(e.effect->spec()); });
 }
 
 std::vector<Simulator::Step> Simulator::expected_steps(Source source) const {
@@ -133,9 +137,9 @@ std::vector<Simulator::Step> Simulator::expected_steps(Source source) const {
     const bool applies = source == Source::kRender || makes_light(spec) || spec.role == ImageRole::kResponse;
     if (plan_->effects[i].need.needed && applies) steps.push_back({Act::kApply, i});
   }
-  if (source == Source::kRender || varies()) steps.insert(steps.begin(), {Act::kClear, light});
-  if (source == Source::kRecall && varies()) steps.push_back({Act::kAddRecalled, light});
-  if (source == Source::kRecall && !varies()) steps = {{Act::kRecall, light}};
+  if (source == Source::kRender || varies_) steps.insert(steps.begin(), {Act::kClear, light});
+  if (source == Source::kRecall && varies_) steps.push_back({Act::kAddRecalled, light});
+  if (source == Source::kRecall && !varies_) steps = {{Act::kRecall, light}};
   return steps;
 }
 
@@ -213,16 +217,17 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.clipped_pixels = 0;
   state.ringing = {};
   std::ranges::fill(state.computed().flags.pixels(), std::uint8_t{0});
-  fill_header(*scene_, camera_.camera, exposure, state.frame.header);
+  state.frame.header = header_;
+  set_time(*scene_, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);
-  state.conditions = conditions_of(*plan_, *scene_, epoch);
+  state.conditions = plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch) : constant_;
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
     if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
       take({Act::kApply, i}, state, whole_);
   const Conditions& conditions = state.conditions;
   if (still_ != nullptr) {
     state.recalled = still_->get(epoch, [&] { return render({}, conditions); });
-    state.still = !varies();
+    state.still = !varies_;
   }
   if (moving_ == nullptr) return;
   const std::size_t maps = plan_->knobs.polynomial.terms.size() - 1;

@@ -102,7 +102,7 @@ TEST(SubFieldMetrics, TakesTheNoiseToTheReferenceMagnitude) {
   EXPECT_NEAR(metrics.nsr_predicted.value, 50.0, 1e-9);
   EXPECT_NEAR(metrics.nsr_measured.value, 51.0, 1e-9);
   EXPECT_NEAR(metrics.spr.value, 1e-4, 1e-12);
-  EXPECT_NEAR(metrics.recovery_mmag.value, 2.0, 1e-9);
+  EXPECT_NEAR(metrics.recovery.value, 2e-3, 1e-12);
 }
 
 TEST(SubFieldMetrics, KnowsNothingWithoutTargets) {

@@ -27,7 +27,7 @@ struct SubFieldMetrics {
   FocalPlaneValue nsr_predicted;  ///< ppm in one bin with all cameras, of a star of the reference magnitude
   FocalPlaneValue nsr_measured;   ///< the same times measured over predicted noise within bins
   FocalPlaneValue spr;            ///< median stellar pollution ratio
-  FocalPlaneValue recovery_mmag;  ///< mean of measured - true magnitude that contamination and aperture do not explain
+  FocalPlaneValue recovery;       ///< mean of measured - true magnitude that contamination and aperture do not explain
 };
 
 /// Targets within `kNearReference` of the reference magnitude; their noise is taken to it by a straight line in

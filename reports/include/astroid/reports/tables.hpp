@@ -27,7 +27,7 @@ std::span<const Column<BudgetRow>> budget_columns();                ///< noise_b
 /// The surfaces over the focal plane at one place.
 struct FocalPlaneMapRow {
   double x, y;  ///< px
-  FocalPlaneValue nsr_predicted, nsr_measured, spr, recovery_mmag;
+  FocalPlaneValue nsr_predicted, nsr_measured, spr, recovery;
 };
 std::span<const Column<SubFieldMetrics>> focal_plane_columns();       ///< focal_plane.csv
 std::span<const Column<FocalPlaneMapRow>> focal_plane_map_columns();  ///< focal_plane_map.csv

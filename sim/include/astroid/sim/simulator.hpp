@@ -84,7 +84,6 @@ class Simulator {
   [[nodiscard]] bool reads_by_strips() const;
   [[nodiscard]] std::vector<Step> expected_steps(Source source) const;
   [[nodiscard]] Source source() const;
-  [[nodiscard]] bool varies() const;
   void begin(std::int64_t exposure, ExposureState& state) const;
   void run(const std::vector<Stage>& stages, ExposureState& state, const StepObserver& observer = {}) const;
   void run(const Stage& stage, ExposureState& state, const StepObserver& observer) const;
@@ -104,6 +103,9 @@ class Simulator {
   Strip whole_;
   Strip exposed_;
   std::size_t longest_strip_ = 0;
+  bool varies_ = false;                        // light differs from exposure to exposure
+  Conditions constant_;                        // where conditions do not change
+  FrameHeader header_;                         // what exposures have in common
   std::shared_ptr<const StillImages> still_;   // the noiseless images, if nothing moves, one for each epoch
   std::shared_ptr<const MovingImage> moving_;  // if little does
   std::vector<Stage> stages_;                  // of an exposure
