@@ -31,7 +31,17 @@ constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},
                                      {"adc", 0.5},
                                      {"flat-field", 0.4},
                                      {"charge-injection", 0.05},
-                                     {"cosmic-rays", 0.5}};
+                                     {"vignetting", 0.4},
+                                     {"variable-stars", 0.2},
+                                     {"open-shutter-smearing", 0.3},
+                                     {"frame-transfer-smearing", 0.7},
+                                     {"hot-pixels", 0.02},
+                                     {"dead-pixels", 0.02},
+                                     {"cross-talk", 1.5},
+                                     {"non-linearity", 0.5},
+                                     {"bias-drift", 0.1},
+                                     {"row-offset", 0.3},
+                                     {"bad-pixel-map", 0.02}};
 /// The same of a CMOS detector, a read (bench: BM_CmosExposure).
 constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 2.0},
                                     {"pixel-gain", 0.4},       {"reset-noise", 1.45},
@@ -69,6 +79,14 @@ double moving_cost(std::string_view effect, const CcdSettings& ccd) {
   if (ccd.cti.model == CtiModel::kSimple)
     return (ccd.cti.parallel > 0.0 ? kSimple : 0.0) + (ccd.cti.serial > 0.0 ? 2.0 * kSimple : 0.0);
   return kTrap * static_cast<double>(ccd.cti.trap_density.size() + ccd.cti.register_density.size());
+}
+
+/// Ns a pixel of the particles of one cycle (bench: BM_CosmicRays).
+double particle_cost(const Mission& mission) {
+  constexpr double kParticle = 550.0;    // ns
+  constexpr double kCentimetres = 1e-4;  // in a micrometre
+  const double side = mission.ccd.pixel_size * kCentimetres;
+  return kParticle * mission.ccd.cosmic_rays.rate * side * side * mission.simulation.cycle.value();
 }
 
 const StarCost& star_cost(const Plan& plan) {
@@ -156,6 +174,7 @@ double nominal_seconds(const PlannedEffect& effect, const Plan& plan, const Scen
        {std::span<const PixelCost>(kPixelCosts), std::span<const PixelCost>(kReadCosts)})
     for (const PixelCost& cost : costs)
       if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * reads;
+  if (spec.name == "cosmic-rays") return kNanosecond * particle_cost(scene.mission()) * pixels;
   return kNanosecond * moving_cost(spec.name, scene.mission().ccd) * pixels;
 }
 

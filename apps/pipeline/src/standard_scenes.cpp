@@ -77,6 +77,45 @@ std::vector<StandardScene> standard_scenes() {
     jitter(m, 0.04);
     m.ccd.full_well = Electrons(2e5);
   }
+  {
+    Mission& m = add("stars of a moving camera, Moffat PSF", kFew);
+    jitter(m, 0.04);
+    m.psf.model = PsfModel::kMoffat;
+  }
+  {
+    Mission& m = add("light that is rendered for each exposure", kFew);
+    jitter(m, 0.3);
+    m.field.stray_light = {ElectronsPerSecond(9.0), 0.5, -0.5};
+    m.telescope.vignetting.model = VignettingModel::kCosineSquared;
+    m.ccd.flat_field.rms = 0.01;
+    m.ccd.charge_injection = {.every_rows = 100, .first_row = 0, .level = Electrons(1e4)};
+    m.ccd.bad_pixels.dead = m.ccd.bad_pixels.hot = 1e-3;
+    m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(4.0)};
+    m.ccd.pixel_scale = PixelScale(100.0);
+  }
+  {
+    Mission& m = add("charge that moves, two nodes", kFew);
+    jitter(m, 0.04);
+    m.ccd.cosmic_rays.rate = 10.0;
+    m.ccd.brighter_fatter = {.serial = 3e-7, .parallel = 4e-7, .decay = 0.5, .range = 3};
+    m.ccd.cti.model = CtiModel::kSimple;
+    m.ccd.cti.parallel = m.ccd.cti.serial = 1e-5;
+    m.ccd.nodes = {.count = 2, .gain_factor = {1.01, 0.99}, .noise_factor = {}, .cross_talk = 1e-3};
+    m.ccd.electronics.nonlinearity = {0.0, -0.0042789409, 2.365e-7};
+    m.ccd.electronics.bias_drift = 3.0;
+    m.ccd.electronics.row_offset = 2.0;
+  }
+  {
+    Mission& m = add("a CMOS detector, four reads", kFew);
+    jitter(m, 0.04);
+    m.simulation.type = DetectorType::kCmos;
+    m.cmos.reads = 4;
+    m.cmos.gain_rms = 0.01;
+    m.cmos.coupling = 0.01;
+    m.cmos.column_noise = m.cmos.row_noise = Electrons(5.0);
+    m.cmos.telegraph_fraction = 0.01;
+    m.cmos.telegraph_current = ElectronsPerSecond(5.0);
+  }
   return scenes;
 }
 

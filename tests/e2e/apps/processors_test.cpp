@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <set>
+#include <tuple>
 
 #include "astroid/core/fits_writer.hpp"
 #include "astroid/core/vector_target.hpp"
@@ -51,6 +52,45 @@ const Words kEveryEffect = {"CCD/FullWell=200000",    "CCD/ADCBits=13",         
                             "Output/Lightcurves=all", "Simulation/Exposures=3", "Output/DumpSteps=1"};
 const std::set<std::string> kEffects = {"jitter-model", "stars",     "sky",           "prnu", "dark-current", "gain",
                                         "photon-noise", "full-well", "readout-noise", "bias", "adc"};
+
+/// What optics, sky, pixels and electronics of both kinds of detector add to these.
+const Words kOptics = {"Telescope/Throughput=0.9",
+                       "Telescope/Ageing/EndOfLife=0.8",
+                       "Telescope/Vignetting/model=cos2",
+                       "Telescope/Ghosts/Fraction=0.001",
+                       "Telescope/Ghosts/BrighterThan=12",
+                       "PSF/Breathing/Amplitude=0.1",
+                       "PSF/Breathing/Period=200",
+                       "PSF/ChargeDiffusion=0.2",
+                       "StellarField/StrayLight/Level=3",
+                       "StellarField/StrayLight/GradientX=0.3",
+                       "CCD/FlatField/RMS=1",
+                       "CCD/CosmicRays/Rate=100",
+                       "CCD/BadPixels/Dead=0.5",
+                       "CCD/BadPixels/Hot=0.5"};
+const Words kCcd = {"CCD/ChargeInjection/EveryRows=40",
+                    "CCD/ChargeInjection/Level=5000",
+                    "CCD/BrighterFatter/Serial=3e-7",
+                    "CCD/BrighterFatter/Parallel=4e-7",
+                    "CCD/CTI/model=simple",
+                    "CCD/CTI/Parallel=1e-5",
+                    "CCD/CTI/Serial=1e-5",
+                    "CCD/ReferencePixels/Prescan=8",
+                    "CCD/ReferencePixels/SerialOverscan=8",
+                    "CCD/ReferencePixels/Overscan=10",
+                    "CCD/Smearing/model=open-shutter",
+                    "CCD/Nodes/Count=2",
+                    "CCD/Nodes/GainFactors=1.02 0.97",
+                    "CCD/Nodes/CrossTalk=0.001",
+                    "CCD/Electronics/NonLinearity=0 -0.0042789409 2.365e-7",
+                    "CCD/Electronics/BiasDrift=3",
+                    "CCD/Electronics/RowOffset=1",
+                    "Photometry/Calibration/Smearing=on",
+                    "Photometry/Calibration/Bias=prescan"};
+const Words kCmos = {"Simulation/Type=CMOS",        "CMOS/Reads=4",         "CMOS/ResetNoise=20",
+                     "CMOS/ColumnNoise=3",          "CMOS/RowNoise=3",      "CMOS/GainSpread=1",
+                     "CMOS/ReadoutNoiseSpread=0.2", "CMOS/Coupling/Side=1", "CMOS/Telegraph/Fraction=1",
+                     "CMOS/Telegraph/Current=5"};
 
 constexpr std::size_t kImages = 3;
 const std::size_t kMaps = kEffects.size() - 1;  // jitter has none
@@ -147,6 +187,32 @@ TEST_P(SameForAnySimdTarget, AreAllProducts) {
   }
 }
 
+/// Effects that are on in the plan of a run.
+std::size_t effects_on(const std::filesystem::path& folder) {
+  std::size_t on = 0;
+  const auto plan = nlohmann::json::parse(test::read_file(folder / "plan.json"));
+  for (const auto& effect : plan.at("effects")) on += effect.at("on") ? 1U : 0U;
+  return on;
+}
+
+TEST_F(Processors, AWholeInstrumentHasTheSameBitsOnAnyVectorsAndThreads) {
+  for (const auto& [name, detector, fewest] : {std::tuple{"ccd", kCcd, 26U}, std::tuple{"cmos", kCmos, 23U}}) {
+    std::filesystem::path first;
+    int threads = 0;
+    for (const std::string& target : vector_targets()) {
+      const auto folder = run(
+          name + target, {"env", "ASTROID_VECTORS=" + target, kNoGnuplot},
+          joined({set(kEveryEffect), set(kOptics), set(detector), {"--threads", std::to_string(1 + threads++ % 3)}}));
+      if (first.empty()) {
+        first = folder;
+        EXPECT_GE(effects_on(first), fewest) << name;
+      } else {
+        EXPECT_GE(test::expect_same_products(first, folder), kImages + 30U) << name;
+      }
+    }
+  }
+}
+
 TEST(VectorInstructions, AreChosenByTheEnvironment) {
   const test::TemporaryFolder folder;
   for (const std::string& target : vector_targets())
@@ -206,6 +272,20 @@ TEST_P(SameOnAnyProcessor, AreImagesAndLightCurves) {
     EXPECT_GE(test::expect_same_products(native, emulated, {"images/", "steps/", "photometry/", "plan.", "truth/"}),
               kImages + kMaps + 5U)
         << scene.name;
+  }
+}
+
+TEST_P(SameOnAnyProcessor, AreImagesOfAWholeInstrument) {
+  for (const Words& detector : {kCcd, kCmos}) {
+    const Words arguments = joined({set(kEveryEffect),
+                                    {"--set", "StellarField/Catalogue=field.csv"},
+                                    set(kOptics),
+                                    set(detector),
+                                    {"--overwrite"}});
+    const auto native = run("native", {"env", kNoGnuplot}, arguments);
+    const auto emulated = run("emulated", emulator_, arguments);
+    EXPECT_GE(test::expect_same_products(native, emulated, {"images/", "steps/", "photometry/", "plan.", "truth/"}),
+              kImages + 20U);
   }
 }
 
