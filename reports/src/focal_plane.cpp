@@ -45,6 +45,7 @@ FocalPlaneSurface surface_of(const FocalPlaneInput& input, const Mapped& quantit
 /// Coordinates along one side, edges included.
 std::vector<double> places(int first, int count) {
   std::vector<double> at;
+  at.reserve(kMapSide);
   for (int i = 0; i < kMapSide; ++i) at.push_back(first + (count - 1.0) * i / (kMapSide - 1.0));
   return at;
 }
@@ -98,6 +99,7 @@ Figure figure_focal_plane(const FocalPlaneInput& input, const Mapped& quantity) 
 void write_map(const std::filesystem::path& path, const FocalPlaneInput& input) {
   const std::vector<Mapped> all = quantities(input);
   std::vector<FocalPlaneSurface> surfaces;
+  surfaces.reserve(all.size());
   for (const Mapped& quantity : all) surfaces.push_back(surface_of(input, quantity));
   std::vector<FocalPlaneMapRow> rows;
   for (const double y : places(input.detector.y0, input.detector.ny))

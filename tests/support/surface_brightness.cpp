@@ -130,10 +130,10 @@ SurfaceBrightness table_brightness(const PsfTable& table) {
           knots(ny, table.centre_y, table.samples_per_pixel)};
 }
 
-Area square_of_pixels(int x, int y, int n) {
-  const long double x0 = static_cast<long double>(x) - 0.5L;
-  const long double y0 = static_cast<long double>(y) - 0.5L;
-  return {x0, x0 + n, y0, y0 + n};
+Area area_of(const Rectangle& pixels) {
+  const long double x0 = static_cast<long double>(pixels.x0) - 0.5L;
+  const long double y0 = static_cast<long double>(pixels.y0) - 0.5L;
+  return {x0, x0 + pixels.nx, y0, y0 + pixels.ny};
 }
 
 Integral integrate_area(const SurfaceBrightness& brightness, PixelPosition star, const Area& area,

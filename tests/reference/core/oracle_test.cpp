@@ -20,7 +20,7 @@ TEST(Oracle, IntegratesAGaussianAndStatesItsError) {
     const auto brightness = test::smooth_brightness(test::gaussian_density(sigma));
     const PixelPosition star{0.31, -0.12};
     for (const int n : {1, 3}) {
-      const auto area = test::square_of_pixels(-1, 0, n);
+      const auto area = test::area_of({-1, 0, n, n});
       const auto integral = test::integrate_area(brightness, star, area, 1e-14L);
       const long double exact =
           exact_axis(sigma, area.x0 - 0.31L, area.x1 - 0.31L) * exact_axis(sigma, area.y0 + 0.12L, area.y1 + 0.12L);
@@ -55,7 +55,7 @@ TEST(Oracle, OfATableIsWhatThePhaseLibraryHasAtItsPhases) {
     psf->integrate(star, box, p);
     for (int y = box.y0; y < box.y1(); ++y)
       for (int x = box.x0; x < box.x1(); ++x) {
-        const auto exact = test::integrate_area(brightness, star, test::square_of_pixels(x, y, 1), 1e-14L);
+        const auto exact = test::integrate_area(brightness, star, test::area_of({x, y, 1, 1}), 1e-14L);
         EXPECT_NEAR(p[static_cast<std::size_t>((y - box.y0) * box.nx + x - box.x0)], static_cast<double>(exact.value),
                     2e-15);
       }
@@ -65,7 +65,7 @@ TEST(Oracle, OfATableIsWhatThePhaseLibraryHasAtItsPhases) {
 TEST(Oracle, WeighsCellsWithTheResponse) {
   const auto brightness = test::smooth_brightness(test::gaussian_density(0.5L));
   const PixelPosition star{0.2, 0.1};
-  const auto whole = test::integrate_area(brightness, star, test::square_of_pixels(0, 0, 1), 1e-14L);
+  const auto whole = test::integrate_area(brightness, star, test::area_of({0, 0, 1, 1}), 1e-14L);
   const auto uniform = test::integrate_response(brightness, {}, star, 0, 0, 1e-14L);
   EXPECT_NEAR(static_cast<double>(uniform.value), static_cast<double>(whole.value), 1e-16);
   // A pixel that sees with its left half only.

@@ -130,8 +130,7 @@ Errors errors_of(const Optics& optics, const SubPixelRenderer& renderer, const s
     const int y0 = static_cast<int>(std::lround(stars[0].centre.y)) - n / 2;
     test::Integral exact;
     for (const StarLight& star : stars) {
-      test::Integral one =
-          test::integrate_area(optics.brightness, star.centre, test::square_of_pixels(x0, y0, n), 1e-13L);
+      test::Integral one = test::integrate_area(optics.brightness, star.centre, test::area_of({x0, y0, n, n}), 1e-13L);
       one.value *= static_cast<long double>(star.electrons);
       one.error *= static_cast<long double>(star.electrons);
       exact += one;

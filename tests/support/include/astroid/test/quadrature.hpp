@@ -59,8 +59,8 @@ SurfaceBrightness table_brightness(const PsfTable& table);
 struct Area {
   long double x0, x1, y0, y1;
 };
-/// The square of pixels with columns x … x + n - 1 and rows y … y + n - 1.
-Area square_of_pixels(int x, int y, int n);
+/// What pixels cover, edges included.
+Area area_of(const Rectangle& pixels);
 
 /// Light of a star at `star` in an area, by nested adaptive quadrature between the breaks.
 /// @param absolute  error aimed at, relative to the star's light; the outcome states its own
