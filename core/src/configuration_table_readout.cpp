@@ -162,6 +162,26 @@ std::vector<Parameter> electronics_parameters() {
        .meaning = "Rms of a random offset that all pixels of a row share, of each node, new in each exposure.",
        .example = "0.1",
        .assign = [](Mission& m, const Value& v) { m.ccd.electronics.row_offset = v.real; }},
+      {.path = "CCD/Electronics/PickUpAmplitude",
+       .unit = "ADU",
+       .range = from_to(0, 1e6),
+       .fallback = "0",
+       .meaning =
+           "Amplitude of a sinusoid that interference adds along the readout, with a random phase in each exposure.",
+       .example = "2",
+       .assign = [](Mission& m, const Value& v) { m.ccd.electronics.pick_up.amplitude = v.real; }},
+      {.path = "CCD/Electronics/PickUpColumnFrequency",
+       .range = from_to(-0.5, 0.5),
+       .fallback = "0",
+       .meaning = "Cycles of that sinusoid per pixel from column to column.",
+       .example = "0.21",
+       .assign = [](Mission& m, const Value& v) { m.ccd.electronics.pick_up.column_frequency = v.real; }},
+      {.path = "CCD/Electronics/PickUpRowFrequency",
+       .range = from_to(-0.5, 0.5),
+       .fallback = "0",
+       .meaning = "Cycles of that sinusoid per pixel from row to row.",
+       .example = "0.03",
+       .assign = [](Mission& m, const Value& v) { m.ccd.electronics.pick_up.row_frequency = v.real; }},
   };
 }
 

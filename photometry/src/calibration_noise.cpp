@@ -1,6 +1,8 @@
 // What smearing and the levels that calibration subtracts add to a flux and its noise.
 #include <algorithm>
+#include <numbers>
 
+#include "astroid/core/math.hpp"
 #include "star_estimator_builder.hpp"
 
 namespace astroid::detail {
@@ -10,6 +12,24 @@ namespace {
 bool differs_between_nodes(const GroundModel& model) {
   return std::any_of(model.more_readout_variance.begin(), model.more_readout_variance.end(),
                      [](double variance) { return variance != 0.0; });
+}
+
+/// Variance of the weighted sum of a wave of random phase. @source F104
+double pick_up_variance(const GroundModel& model, const StarEstimator& estimator, const Rectangle& region,
+                        std::size_t offset) {
+  if (model.pick_up == 0.0) return 0.0;
+  const auto width = static_cast<std::size_t>(region.nx);
+  double sine = 0.0;
+  double cosine = 0.0;
+  for (const EstimatorTerm& term : estimator.terms) {
+    const std::size_t k = term.pixel - offset;
+    const double angle = 2.0 * std::numbers::pi *
+                         (model.pick_up_column_frequency * (region.x0 + static_cast<int>(k % width)) +
+                          model.pick_up_row_frequency * (region.y0 + static_cast<int>(k / width)));
+    sine += static_cast<double>(term.weight) * det::sin(angle);
+    cosine += static_cast<double>(term.weight) * det::cos(angle);
+  }
+  return 0.5 * model.pick_up * model.pick_up * (sine * sine + cosine * cosine);
 }
 
 }  // namespace
@@ -63,6 +83,7 @@ void StarEstimatorBuilder::add_calibration_noise(StarEstimator& estimator) {
   }
   const double common = budget.bias_weight * budget.bias_weight;  // of what all pixels share
   for (const double weight : row_weights_) budget.var_bias += weight * weight * model_.row_offset_variance;
+  budget.var_bias += pick_up_variance(model_, estimator, region, layout_.offset(estimator.region));
   if (smearing.overscan_rows <= 0) {
     budget.var_bias += common * model_.bias_variance;
     if (model_.bias_is_measured) budget.bias_weight = 0.0;

@@ -21,6 +21,7 @@
 #include "effects/jitter_model.hpp"
 #include "effects/nonlinearity.hpp"
 #include "effects/photon_noise.hpp"
+#include "effects/pick_up_noise.hpp"
 #include "effects/prnu.hpp"
 #include "effects/proper_motion_effect.hpp"
 #include "effects/readout_noise.hpp"
@@ -48,8 +49,8 @@ using CcdTable =
                 Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, ChargeInjection, OpenShutterSmearing,
                 FrameTransferSmearing,                                   // PixelMean
                 PhotonNoise, CosmicRays, BrighterFatter, FullWell, Cti,  // PixelSample
-                ReadoutNoise, GainEffect, CrossTalk, NonLinearity, BiasEffect, BiasDrift, RowOffset, BadPixelMap,
-                Adc>;  // Readout
+                ReadoutNoise, GainEffect, CrossTalk, NonLinearity, BiasEffect, BiasDrift, RowOffset, PickUpNoise,
+                BadPixelMap, Adc>;  // Readout
 
 }  // namespace
 

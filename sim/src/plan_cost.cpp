@@ -41,6 +41,7 @@ constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},
                                      {"non-linearity", 0.5},
                                      {"bias-drift", 0.1},
                                      {"row-offset", 0.3},
+                                     {"pick-up-noise", 4.7},
                                      {"bad-pixel-map", 0.02}};
 /// The same of a CMOS detector, a read (bench: BM_CmosExposure).
 constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 2.0},

@@ -64,6 +64,7 @@ void read_without_a_shutter(Mission& mission) {
   mission.ccd.electronics.gain_drift = 1e-4;
   mission.ccd.electronics.bias_drift = 2.0;
   mission.ccd.electronics.row_offset = 0.2;
+  mission.ccd.electronics.pick_up = {.amplitude = 0.5, .column_frequency = 0.21, .row_frequency = 0.03};
   mission.ccd.bad_pixels = {.dead = 1e-4, .hot = 1e-4};
 }
 

@@ -71,7 +71,7 @@ def binaries(tree):
 
 
 KEY = re.compile(r"\b[A-Z][A-Za-z]+\d{4}[a-z]?\b")
-NUMBER = re.compile(r"\b[FN]\d{1,2}\b")
+NUMBER = re.compile(r"\b[FN]\d{1,3}\b")
 
 
 def source_tags(tree):

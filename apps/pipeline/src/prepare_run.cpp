@@ -66,6 +66,9 @@ void believe_readout(const Scene& scene, GroundModel& model) {
   model.bias_is_measured = scene.mission().photometry.calibration.bias == BiasSource::kPrescan;
   const double row_offset = ccd.electronics.row_offset * ccd.gain.value();
   model.row_offset_variance = row_offset * row_offset;
+  model.pick_up = ccd.electronics.pick_up.amplitude * ccd.gain.value();
+  model.pick_up_column_frequency = ccd.electronics.pick_up.column_frequency;
+  model.pick_up_row_frequency = ccd.electronics.pick_up.row_frequency;
   model.nodes = ReadoutNodes(scene.detector(), ccd.nodes.count);
   const double variance = ccd.readout_noise.value() * ccd.readout_noise.value();
   for (std::size_t node = 0; node < ccd.nodes.noise_factor.size(); ++node) {

@@ -105,6 +105,7 @@ std::vector<StandardScene> standard_scenes() {
     m.ccd.electronics.nonlinearity = {0.0, -0.0042789409, 2.365e-7};
     m.ccd.electronics.bias_drift = 3.0;
     m.ccd.electronics.row_offset = 2.0;
+    m.ccd.electronics.pick_up = {.amplitude = 1.0, .column_frequency = 0.21, .row_frequency = 0.03};
   }
   {
     Mission& m = add("a CMOS detector, four reads", kFew);

@@ -211,6 +211,14 @@ TEST(Nodes, HaveTheirOwnGainAndNoise) {
   EXPECT_NEAR(one_gain.flux, 0.5 + 0.5 / 1.15, 0.02);
 }
 
+TEST(PickUp, AddsTheNoiseOfAWave) {
+  Mission mission = bright_neighbours();
+  mission.ccd.electronics.pick_up = {.amplitude = 4.0, .column_frequency = 0.13, .row_frequency = -0.07};
+  const Measured m = measure(mission);
+  print("a wave of 4 ADU", m);
+  expect_as_predicted(m);
+}
+
 TEST(RowOffsets, AddTheNoiseOfRowsInCommon) {
   Mission mission = bright_neighbours();
   mission.ccd.electronics.row_offset = 2.0;

@@ -234,6 +234,13 @@ std::vector<test::EffectScene> scenes() {
             m.ccd.nodes.count = 2;
           },
           [](Mission& m) { m.ccd.electronics.row_offset = 0.0; }),
+      scene(
+          "pick-up-noise",
+          [](Mission& m) {
+            m.ccd.electronics.pick_up = {.amplitude = 5.0, .column_frequency = 0.21, .row_frequency = -0.03};
+            m.ccd.reference = {.prescan = 4, .serial_overscan = 4, .parallel_overscan = 6};
+          },
+          [](Mission& m) { m.ccd.electronics.pick_up.amplitude = 0.0; }),
       scene("adc", {}, {}),
       cmos_scene(
           "telegraph-pixels",

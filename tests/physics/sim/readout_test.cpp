@@ -170,6 +170,38 @@ TEST(RowOffsets, AreSharedByARowAndNewInEachExposure) {
   EXPECT_LT(std::fabs(z_product), 4.0);
 }
 
+TEST(PickUpNoise, IsASinusoidWithAnotherPhaseInEachExposure) {
+  Mission mission = flat();
+  mission.ccd.bias = Adu(300.0);
+  mission.ccd.electronics.pick_up = {.amplitude = 5.0, .column_frequency = 0.25, .row_frequency = -1.0 / 32.0};
+  const Made made = make(mission);
+  constexpr double kPixels = kColumns * kRows;  // whole periods of 4 columns and 32 rows
+  std::vector<double> phases;
+  for (const std::int64_t exposure : {0, 1, 2, 3}) {
+    const std::vector<double> before = analog_after(made, "bias", exposure);
+    const std::vector<double> after = analog_after(made, "pick-up-noise", exposure);
+    double mean = 0.0;
+    double square = 0.0;
+    double sine = 0.0;
+    double cosine = 0.0;
+    for (int y = 0; y < kRows; ++y)
+      for (int x = 0; x < kColumns; ++x) {
+        const double wave = after[at(x, y)] - before[at(x, y)];
+        const double angle = 2.0 * M_PI * (0.25 * x - y / 32.0);
+        mean += wave / kPixels;
+        square += wave * wave / kPixels;
+        sine += 2.0 * wave * std::sin(angle) / kPixels;
+        cosine += 2.0 * wave * std::cos(angle) / kPixels;
+      }
+    EXPECT_NEAR(mean, 0.0, 1e-10);
+    EXPECT_NEAR(std::sqrt(square), 5.0 / std::sqrt(2.0), 1e-10);
+    EXPECT_NEAR(std::hypot(sine, cosine), 5.0, 1e-10);  // all of it at the frequency asked for
+    phases.push_back(std::atan2(cosine, sine));
+  }
+  for (std::size_t i = 0; i < phases.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j) EXPECT_GT(std::fabs(phases[i] - phases[j]), 1e-3) << i << "," << j;
+}
+
 TEST(BadPixels, AreAsManyAsAskedForAndFlagged) {
   Mission mission = flat();
   mission.ccd.dark_current = ElectronsPerSecond(0.0);

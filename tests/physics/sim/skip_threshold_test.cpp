@@ -311,6 +311,30 @@ INSTANTIATE_TEST_SUITE_P(Effects, ReadoutSkippedBelowThreshold,
                            return name;
                          });
 
+TEST(SkippedBelowThreshold, PickUpNoiseIsHarmless) {
+  const auto set = [](Mission& m, double adu) {
+    m.ccd.electronics.pick_up = {.amplitude = adu, .column_frequency = 0.01, .row_frequency = -0.007};
+  };
+  const double strength = threshold("pick-up-noise", set, 100.0);
+  ASSERT_GT(strength, 0.0);
+  Mission mission = quiet_mission();
+  set(mission, strength);
+  const Planned p = planned(mission);
+  ASSERT_FALSE(p.plan->runs("pick-up-noise"));
+  double square = 0.0;
+  for (std::int64_t exposure = 0; exposure < mission.simulation.exposures; ++exposure) {
+    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
+    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, "pick-up-noise"), exposure);
+    const double difference = with.front() - without.front();  // the faintest star
+    square += difference * difference / static_cast<double>(mission.simulation.exposures);
+  }
+  const double variance = p.scene->summary().faintest_target_electrons + p.scene->summary().pixel_noise_variance * 36.0;
+  std::printf("pick-up-noise at %.3g ADU: %.2g of the variance of the faintest star\n", strength, square / variance);
+  // The mean square of 32 random phases scatters by 12 %.
+  EXPECT_LE(square, 1.5 * kVarianceTolerance * variance);
+  EXPECT_GT(square, 0.0);
+}
+
 TEST(SkippedBelowThreshold, RowOffsetIsHarmless) {
   const auto set = [](Mission& m, double adu) { m.ccd.electronics.row_offset = adu; };
   const double strength = threshold("row-offset", set, 100.0);

@@ -65,6 +65,10 @@ std::vector<Switch> switches() {
          m.ccd.electronics.drift_period = Seconds(60.0);
        }},
       {"row offsets", [](Mission& m) { m.ccd.electronics.row_offset = 3.0; }},
+      {"pick-up noise",
+       [](Mission& m) {
+         m.ccd.electronics.pick_up = {.amplitude = 40.0, .column_frequency = 0.37, .row_frequency = -0.11};
+       }},
       {"bad pixels", [](Mission& m) { m.ccd.bad_pixels = {.dead = 0.05, .hot = 0.05}; }},
       {"jitter",
        [](Mission& m) {

@@ -83,7 +83,12 @@ struct GroundModel {
   ColumnSmearing smearing;
   double bias_variance = 0.0;        ///< e-², of the bias level where it is measured in each exposure; 0: it is known
   double row_offset_variance = 0.0;  ///< e-², of an offset that each row has in each exposure
-  bool bias_is_measured = false;     ///< in each exposure, so that its drift does not matter
+  /// Amplitude, e-, and frequencies, cycles per pixel, of a wave over the detector of another phase in each exposure
+  /// (F104). What of it is in measured levels of bias and smearing is left out.
+  double pick_up = 0.0;
+  double pick_up_column_frequency = 0.0;
+  double pick_up_row_frequency = 0.0;
+  bool bias_is_measured = false;  ///< in each exposure, so that its drift does not matter
   /// Which pixel is read through which node, and what the readout noise of each has more than `noise`, e-².
   ReadoutNodes nodes{{}, 1};
   std::array<double, kMostNodes> more_readout_variance{};
@@ -106,8 +111,8 @@ struct EstimatorBudget {
   double smearing = 0.0;                 ///< weighted electrons that are smeared into the flux and stay there
   double var_smearing = 0.0;             ///< photon noise of what is smeared into the pixels, corrected or not
   double var_smearing_correction = 0.0;  ///< of the column levels that are subtracted: the same for all rows
-  double var_bias = 0.0;                 ///< of a bias that is measured in each exposure, and of offsets of rows
-  double bias_weight = 0.0;              ///< change of the flux, e-, with a bias higher by 1 e- than believed
+  double var_bias = 0.0;     ///< of a bias that is measured in each exposure, of offsets of rows and of pick-up
+  double bias_weight = 0.0;  ///< change of the flux, e-, with a bias higher by 1 e- than believed
   [[nodiscard]] double variance() const {
     return var_target + var_contaminants + var_background + var_readout + var_quantisation + var_background_estimate +
            var_smearing + var_smearing_correction + var_bias;

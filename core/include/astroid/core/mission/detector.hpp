@@ -98,12 +98,22 @@ struct NodeSettings {
   friend bool operator==(const NodeSettings&, const NodeSettings&) = default;
 };
 
+/// A sinusoid along the readout that interference adds.
+struct PickUpSettings {
+  double amplitude = 0.0;         ///< ADU
+  double column_frequency = 0.0;  ///< cycles per pixel from column to column
+  double row_frequency = 0.0;     ///< cycles per pixel from row to row
+
+  friend bool operator==(const PickUpSettings&, const PickUpSettings&) = default;
+};
+
 struct ElectronicsSettings {
   std::vector<double> nonlinearity;  ///< a0, a1, a2 of ADU' = ADU + a0 + a1 ADU + a2 ADU²; none: linear
   double gain_drift = 0.0;           ///< relative, amplitude over one period
   double bias_drift = 0.0;           ///< ADU, amplitude over one period
   Seconds drift_period{86400.0};
   double row_offset = 0.0;  ///< ADU rms, of each row of each exposure
+  PickUpSettings pick_up;
 
   friend bool operator==(const ElectronicsSettings&, const ElectronicsSettings&) = default;
 };
