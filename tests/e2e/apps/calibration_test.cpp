@@ -24,7 +24,7 @@ class Calibration : public testing::Test {
     test::write_pixel_field(folder_.path() / "stars.csv", 512, 2000, "");
     costs_ = folder_.path() / "costs.json";
   }
-  test::ProgramResult run(std::vector<std::string> arguments) {
+  test::ProgramResult run(const std::vector<std::string>& arguments) {
     return test::run_astroid_through({"env", "ASTROID_COSTS=" + costs_.string()}, arguments, folder_.path());
   }
   test::TemporaryFolder folder_;

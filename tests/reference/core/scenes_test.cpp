@@ -168,8 +168,6 @@ TEST_P(TwoHundredScenes, AgreeWithTheOracleInEveryRenderer) {
     const bool is_table = scene % 3 == 2;
     const double sigma = dice(0.3, 3.0);
     const auto stars = stars_of(dice);
-    double all_light = 0.0;
-    for (const StarLight& star : stars) all_light += star.electrons;
     Errors errors;
     if (is_table) {
       const auto which = static_cast<std::size_t>(scene / 3 % kTables);
