@@ -4,12 +4,11 @@
 #include <vector>
 
 #include "astroid/core/math.hpp"
+#include "astroid/sim/accuracy_shares.hpp"
 
 namespace astroid {
 
 namespace {
-
-constexpr double kPsfShare = 0.4;  ///< of the accuracy, see AccuracyShares
 
 double coefficient(const std::vector<double>& list, std::size_t i) {
   return i < list.size() ? list[i] : 0.0;
@@ -56,7 +55,7 @@ SkyProjection make_projection(const Mission& mission) {
 
 std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {
   const PsfSettings& psf = mission.psf;
-  const double accuracy = kPsfShare * 1e-6 * mission.simulation.accuracy.value();
+  const double accuracy = kAccuracyShares.psf * 1e-6 * mission.simulation.accuracy.value();
   const PsfWings wings{.reach = psf.reach, .diffusion = psf.diffusion.value()};
   switch (psf.model) {
     case PsfModel::kGaussian:

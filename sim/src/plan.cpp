@@ -11,6 +11,7 @@
 
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/math.hpp"
+#include "astroid/sim/accuracy_shares.hpp"
 #include "astroid/sim/effect_table.hpp"
 #include "plan_cost.hpp"
 #include "plan_motion.hpp"
@@ -161,7 +162,6 @@ Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoc
 }
 
 Plan make_plan(const Scene& scene, const CostFactors& costs) {
-  constexpr AccuracyShares kShares;
   Plan plan;
   const SceneSummary& summary = scene.summary();
   bool moves = false;
@@ -183,9 +183,9 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   plan.renderer_error = map != nullptr ? map->predicted_error() : scene.psf().approximation_error();
   plan.psf_error = plan.renderer_error * summary.brightest_target_electrons;
   plan.knobs.variables = plan.runs("variable-stars");
-  plan.knobs.stamps = plan_stamps(scene, kShares.stamps, plan.stamp_error);
-  if (moves) plan_jitter(scene, kShares.jitter, plan);
-  if (moves && steady) plan_polynomial(scene, kShares.jitter, plan);
+  plan.knobs.stamps = plan_stamps(scene, kAccuracyShares.stamps, plan.stamp_error);
+  if (moves) plan_jitter(scene, kAccuracyShares.jitter, plan);
+  if (moves && steady) plan_polynomial(scene, kAccuracyShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
   if (map != nullptr && plan.knobs.variables && scene.mission().psf.intra_pixel.flat > 0.0)

@@ -4,12 +4,12 @@
 #include <utility>
 
 #include "astroid/core/math.hpp"
+#include "astroid/sim/accuracy_shares.hpp"
 
 namespace astroid {
 
 namespace {
 
-constexpr double kPsfShare = 0.4;     ///< of the accuracy, see AccuracyShares
 constexpr double kSplineShare = 0.1;  ///< of that, for a Gaussian as a table
 
 [[noreturn]] void refuse(const Mission& mission, const char* expected, const char* message) {
@@ -35,7 +35,7 @@ PsfTable given_table(const Mission& mission) {
 }
 
 PsfTable psf_table(const Mission& mission) {
-  const double accuracy = kSplineShare * kPsfShare * 1e-6 * mission.simulation.accuracy.value();
+  const double accuracy = kSplineShare * kAccuracyShares.psf * 1e-6 * mission.simulation.accuracy.value();
   return mission.psf.model == PsfModel::kGaussian ? make_gaussian_table(gaussian_sigma(mission), accuracy)
                                                   : given_table(mission);
 }
@@ -104,7 +104,8 @@ std::shared_ptr<const PixelPsf> make_recorded_psf(const Mission& mission, std::s
   const bool gaussian = mission.psf.model == PsfModel::kGaussian;
   const bool library = choose_renderer(mission).renderer == Renderer::kPrf && gaussian;
   if (!library && !has_intra_pixel_response(mission)) return optical;
-  return make_prf_psf(psf_table(mission), kPsfShare * 1e-6 * mission.simulation.accuracy.value(), mission.psf.phases,
+  return make_prf_psf(psf_table(mission), kAccuracyShares.psf * 1e-6 * mission.simulation.accuracy.value(),
+                      mission.psf.phases,
                       has_intra_pixel_response(mission) ? common_response(mission.psf.intra_pixel) : PixelResponse{});
 }
 

@@ -19,6 +19,7 @@
 #include "astroid/core/photometric.hpp"
 #include "astroid/core/sphere.hpp"
 #include "astroid/core/throughput.hpp"
+#include "astroid/sim/accuracy_shares.hpp"
 #include "astroid/sim/smearing.hpp"
 #include "effects/drift.hpp"
 #include "effects/jitter_model.hpp"
@@ -32,7 +33,6 @@ namespace {
 
 /// A star this far outside the frame gives less than this share of its light to it.
 constexpr double kNegligibleShare = 1e-12;
-constexpr double kPsfShare = 0.4;  ///< of the accuracy, see AccuracyShares
 
 /// Attitude is the spacecraft's: camera and detector stay out of the address, so cameras share it.
 RandomStream attitude_stream(const Mission& mission, StreamId effect) {
@@ -319,8 +319,9 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     constexpr double kNeighbours = 4.0;
     constexpr double kRounding = 1e-13;
     const double brightest = kNeighbours * std::max(s.brightest_electrons, 1.0);
-    sub_pixel_renderer_ = make_sub_pixel_renderer(mission_, kPsfShare * s.accuracy,
-                                                  std::max(kRounding, kPsfShare * s.tightest_tolerance() / brightest));
+    sub_pixel_renderer_ =
+        make_sub_pixel_renderer(mission_, kAccuracyShares.psf * s.accuracy,
+                                std::max(kRounding, kAccuracyShares.psf * s.tightest_tolerance() / brightest));
   }
 }
 

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <map>
 #include <utility>
 
@@ -70,6 +72,28 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
     }
   }
   return lists;
+}
+
+Attitude farthest_attitude(const PrepareContext& context) {
+  const Attitude& scale = context.knobs.polynomial.scale;
+  const Attitude& farthest = context.attitude.farthest;
+  return {farthest.yaw + 2.0 * scale.yaw, farthest.pitch + 2.0 * scale.pitch, farthest.roll + 2.0 * scale.roll};
+}
+
+std::vector<std::vector<std::vector<RenderedStar>>> star_lists(const PrepareContext& context,
+                                                               std::span<const Strip> strips, StarChoice choice) {
+  std::vector<Rectangle> areas;
+  for (const Strip& strip : strips) areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
+  auto lists = star_lists(context.scene, context.knobs, areas, farthest_attitude(context), choice);
+  std::vector<std::vector<std::vector<RenderedStar>>> by_strip;
+  by_strip.reserve(strips.size());
+  auto list = lists.begin();
+  for (const Strip& strip : strips) {
+    const auto end = list + static_cast<std::ptrdiff_t>(strip.areas.size());
+    by_strip.emplace_back(std::move_iterator(list), std::move_iterator(end));
+    list = end;
+  }
+  return by_strip;
 }
 
 }  // namespace astroid

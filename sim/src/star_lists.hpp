@@ -20,4 +20,12 @@ std::vector<std::vector<RenderedStar>> star_lists(const Scene& scene, const Plan
                                                   std::span<const Rectangle> areas, const Attitude& farthest,
                                                   StarChoice choice = StarChoice::kAll);
 
+/// How far the attitude leads the images that are made, arcsec: those that a polynomial goes through lie up to a cell
+/// farther out than any exposure.
+Attitude farthest_attitude(const PrepareContext& context);
+
+/// The same for the areas of each strip: [strip][area].
+std::vector<std::vector<std::vector<RenderedStar>>> star_lists(const PrepareContext& context,
+                                                               std::span<const Strip> strips, StarChoice choice);
+
 }  // namespace astroid

@@ -65,6 +65,24 @@ void CrossTalk::support(const Scene& scene, std::vector<Rectangle>& regions) con
     }
 }
 
+void CrossTalk::prepare(CameraState& camera, const PrepareContext& context) const {
+  // Effects before this one may have made the regions larger, with margins that are not right, but left them in the
+  // order in which support() put them.
+  const Scene& scene = context.scene;
+  const bool whole = camera.layout->regions().front() == scene.detector();
+  const std::span<const Rectangle> delivered = scene.layout()->exposed_regions();
+  std::vector<Rectangle> asked(delivered.begin(), delivered.end());
+  support(scene, asked);
+  for (const Rectangle& area : delivered)
+    for (const Mirror& mirror : mirrors_of(scene)) {
+      const Rectangle other = mirrored(area, scene.detector(), mirror);
+      const auto found = std::ranges::find_if(asked, [&](const Rectangle& region) { return holds(region, other); });
+      const std::size_t from = whole ? 0 : static_cast<std::size_t>(found - asked.begin());
+      ASTROID_CHECK_EQ(holds(camera.layout->exposed_regions()[from], other), true);
+      camera.cross_talk_from.push_back(from);
+    }
+}
+
 void CrossTalk::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const double share = context.scene.mission().ccd.nodes.cross_talk;
   const Rectangle detector = context.scene.detector();
@@ -72,22 +90,17 @@ void CrossTalk::apply(ExposureState& state, const EffectContext& context, const 
   const std::span<double> pixels = state.analog.pixels(strip);
   // Every node hears the others as they were.
   state.scratch.assign(pixels.begin(), pixels.end());
-  // Nothing after this depends on other pixels than its own, so the delivered ones are enough. Effects before it may
-  // have made the regions larger, with margins that are not right, but left them where support() put them.
+  // Nothing after this depends on other pixels than its own, so the delivered ones are enough.
   const std::span<const Rectangle> delivered = context.scene.layout()->exposed_regions();
-  std::vector<Rectangle> asked(delivered.begin(), delivered.end());
-  support(context.scene, asked);
   const bool whole = strip.areas.front() == detector;
+  auto from = context.camera.cross_talk_from.begin();
   for (std::size_t r = 0; r < delivered.size(); ++r) {
     const Rectangle& area = delivered[r];
     const auto view = state.analog.view(strip, whole ? 0 : r);
     for (const Mirror& mirror : mirrors) {
-      const Rectangle other = mirrored(area, detector, mirror);
-      const auto found = std::ranges::find_if(asked, [&](const Rectangle& region) { return holds(region, other); });
-      const std::size_t from = whole ? 0 : static_cast<std::size_t>(found - asked.begin());
-      const Rectangle& source = strip.areas[from];
-      ASTROID_CHECK_EQ(holds(source, other), true);
-      const std::size_t begin = strip.area_begins[from] - strip.begin;
+      const Rectangle& source = strip.areas[*from];
+      const std::size_t begin = strip.area_begins[*from] - strip.begin;
+      ++from;
       for (int y = area.y0; y < area.y1(); ++y) {
         const int y_other = mirror.y ? detector.y0 + detector.y1() - 1 - y : y;
         const double* row = state.scratch.data() + begin +

@@ -23,6 +23,7 @@ class CrossTalk final : public Effect {
   [[nodiscard]] const EffectSpec& spec() const override { return kSpec; }
   [[nodiscard]] EffectNeed is_needed(const SceneSummary& scene) const override;
   void support(const Scene& scene, std::vector<Rectangle>& regions) const override;
+  void prepare(CameraState& camera, const PrepareContext& context) const override;
   void apply(ExposureState& state, const EffectContext& context, const Strip& strip) const override;
 };
 

@@ -46,12 +46,4 @@ inline const PixelPsf& recorded_psf(const EffectContext& context) {
   return left_out ? context.scene.optical_psf() : context.scene.psf();
 }
 
-/// How far the attitude leads the images that are made, arcsec: those that a polynomial goes through lie up to a cell
-/// farther out than any exposure.
-inline Attitude farthest_attitude(const PrepareContext& context) {
-  const Attitude& scale = context.knobs.polynomial.scale;
-  const Attitude& farthest = context.attitude.farthest;
-  return {farthest.yaw + 2.0 * scale.yaw, farthest.pitch + 2.0 * scale.pitch, farthest.roll + 2.0 * scale.roll};
-}
-
 }  // namespace astroid

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <span>
 #include <vector>
 
@@ -26,16 +25,7 @@ EffectNeed Stars::is_needed(const SceneSummary& scene) const {
 }
 
 void Stars::prepare(CameraState& camera, const PrepareContext& context) const {
-  std::vector<Rectangle> areas;
-  for (const Strip& strip : camera.strips) areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
-  auto lists = star_lists(context.scene, context.knobs, areas, farthest_attitude(context),
-                          context.knobs.variables ? StarChoice::kConstant : StarChoice::kAll);
-  auto list = lists.begin();
-  for (const Strip& strip : camera.strips) {
-    const auto end = list + static_cast<std::ptrdiff_t>(strip.areas.size());
-    camera.stars.emplace_back(std::move_iterator(list), std::move_iterator(end));
-    list = end;
-  }
+  camera.stars = star_lists(context, camera.strips, context.knobs.variables ? StarChoice::kConstant : StarChoice::kAll);
 }
 
 void Stars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {

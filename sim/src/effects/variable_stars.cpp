@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <iterator>
 #include <span>
 #include <vector>
 
@@ -25,16 +24,7 @@ EffectNeed VariableStars::is_needed(const SceneSummary& scene) const {
 }
 
 void VariableStars::prepare(CameraState& camera, const PrepareContext& context) const {
-  if (!context.knobs.variables) return;
-  std::vector<Rectangle> areas;
-  for (const Strip& strip : camera.strips) areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
-  auto lists = star_lists(context.scene, context.knobs, areas, farthest_attitude(context), StarChoice::kVariable);
-  auto list = lists.begin();
-  for (const Strip& strip : camera.strips) {
-    const auto end = list + static_cast<std::ptrdiff_t>(strip.areas.size());
-    camera.variables.emplace_back(std::move_iterator(list), std::move_iterator(end));
-    list = end;
-  }
+  if (context.knobs.variables) camera.variables = star_lists(context, camera.strips, StarChoice::kVariable);
 }
 
 void VariableStars::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {

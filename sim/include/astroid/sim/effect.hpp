@@ -140,7 +140,8 @@ struct CameraState {
   Plane<float, unit::ExpectedElectrons> unsmeared;  ///< what frame transfer smears less than that; empty: nothing
   std::vector<std::uint32_t> dead_pixels;           ///< places in the buffer of the layout, rising
   std::vector<std::uint32_t> hot_pixels;
-  CmosPatterns cmos;  ///< of a CMOS detector
+  std::vector<std::size_t> cross_talk_from;  ///< [delivered region][mirror]: the computed region that it hears
+  CmosPatterns cmos;                         ///< of a CMOS detector
 };
 
 /// Everything that belongs to one exposure of one camera. One worker owns it.

@@ -47,13 +47,6 @@ struct PlannedEffect {
   double seconds = 0.0;  ///< predicted per exposure on one core; 0 when it is off or cached
 };
 
-/// How the error allowed by the accuracy is shared out, relative to a target's flux tolerance.
-struct AccuracyShares {
-  double psf = 0.4;     ///< phases and interpolation of the prf renderer
-  double stamps = 0.3;  ///< truncation
-  double jitter = 0.3;  ///< sampling of the motion
-};
-
 /// The immutable plan of a scene.
 struct Plan {
   std::vector<PlannedEffect> effects;  ///< every effect of the table, on or off

@@ -20,7 +20,6 @@ struct SimulationSettings {
   Seconds exposure_time{21.0};
   std::string start = "2027-01-01T00:00:00";  ///< TDB, ISO 8601
   double start_mjd = 61406.0;                 ///< the same as MJD (TDB), filled by the reader
-  double mission_age = 0.0;                   ///< years in orbit at the start: 0 is the beginning of life
   Renderer renderer = Renderer::kAuto;
   int sub_pixels = 0;  ///< per pixel and axis, of the sub-pixel renderer; 0: from the accuracy
 

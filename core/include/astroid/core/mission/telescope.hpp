@@ -49,16 +49,6 @@ struct GhostSettings {
   friend bool operator==(const GhostSettings&, const GhostSettings&) = default;
 };
 
-/// Cameras that share an optical axis.
-struct CameraGroup {
-  std::string name;
-  int cameras = 1;
-  Degrees tilt, azimuth;  ///< of its axis from the spacecraft's, and in which direction from +x
-  Seconds start_offset;   ///< of its exposures within the cycle
-
-  friend bool operator==(const CameraGroup&, const CameraGroup&) = default;
-};
-
 struct TelescopeSettings {
   Magnitude zero_point{20.62};  ///< magnitude that gives one detected electron per second
   std::string zero_point_passband = "P";
@@ -68,7 +58,6 @@ struct TelescopeSettings {
   DistortionSettings distortion;
   VignettingSettings vignetting;
   GhostSettings ghosts;
-  std::vector<CameraGroup> groups;
 
   friend bool operator==(const TelescopeSettings&, const TelescopeSettings&) = default;
 };
