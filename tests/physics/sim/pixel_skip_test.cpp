@@ -8,82 +8,38 @@
 #include <functional>
 #include <vector>
 
-#include "astroid/sim/simulator.hpp"
-#include "astroid/test/scenes.hpp"
+#include "astroid/test/skip_threshold.hpp"
 
 namespace astroid {
 namespace {
 
-constexpr int kSide = 96;
-
-std::vector<test::LabStar> field() {
-  std::vector<test::LabStar> stars;
-  for (int i = 0; i < 9; ++i)
-    stars.push_back(
-        {16.0 + 32.0 * (i % 3) + 0.11 * i - 0.4, 16.0 + 32.0 * (i / 3) - 0.09 * i + 0.3, 3e3 * std::pow(2.0, i)});
-  return stars;
-}
-
-struct Planned {
-  std::shared_ptr<const Scene> scene;
-  std::shared_ptr<Plan> plan;
-};
-Planned planned(const std::function<void(Mission&, double)>& set, double strength) {
-  Mission mission = test::bare_mission(kSide, kSide);
-  mission.ccd.readout_noise = Electrons(20.0);
-  mission.simulation.exposures = 32;
-  set(mission, strength);
-  Planned p;
-  p.scene = std::make_shared<const Scene>(mission, test::lab_catalogue(field()));
-  p.plan = std::make_shared<Plan>(make_plan(*p.scene));
-  return p;
-}
+using test::planned;
+using test::Planned;
+using test::SkipCase;
 
 /// Drawn electrons in 6 x 6 px around each star, with the effect on or off.
 std::vector<double> fluxes(const Planned& p, const std::string& effect, bool on, std::int64_t exposure) {
-  auto plan = std::make_shared<Plan>(*p.plan);
-  for (PlannedEffect& e : plan->effects)
-    if (e.effect->spec().name == effect) e.need.needed = on;
-  const Simulator simulator(p.scene, plan, 0);
+  const Simulator simulator(p.scene, test::with_effect(*p.plan, effect, on), 0);
   ExposureState state = simulator.make_state();
   std::vector<double> sums;
   simulator.simulate(exposure, state, [&](const EffectSpec& spec, const ExposureState& at) {
-    if (spec.level != EffectLevel::kPixelSample) return;
-    sums.clear();
-    for (const SceneStar& star : p.scene->stars()) {
-      const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
-      const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
-      double sum = 0.0;
-      for (int y = y0; y < y0 + 6; ++y)
-        for (int x = x0; x < x0 + 6; ++x) sum += at.sampled.whole().view(0).at(x, y);
-      sums.push_back(sum);
-    }
+    if (spec.level == EffectLevel::kPixelSample) sums = test::star_sums(*p.scene, at.sampled.whole().view(0));
   });
   return sums;
-}
-
-struct SkipCase {
-  const char* effect;
-  std::function<void(Mission&, double)> set;
-  double high;  ///< surely needed
-};
-void PrintTo(const SkipCase& c, std::ostream* out) {
-  *out << c.effect;
 }
 
 class SkippedPixelEffect : public testing::TestWithParam<SkipCase> {};
 
 TEST_P(SkippedPixelEffect, MovesNoFluxBeyondItsTolerance) {
   const SkipCase& c = GetParam();
-  double low = 0.0;
-  double high = c.high;
-  ASSERT_TRUE(planned(c.set, high).plan->runs(c.effect));
-  for (int i = 0; i < 60 && high - low > 0.01 * high; ++i) {
-    const double middle = 0.5 * (low + high);
-    (planned(c.set, middle).plan->runs(c.effect) ? high : low) = middle;
-  }
-  ASSERT_GT(low, 0.0) << "the effect is never left out";
-  const Planned p = planned(c.set, low);
+  Mission mission = test::quiet_mission();
+  c.set(mission, c.high);
+  ASSERT_TRUE(planned(mission).plan->runs(c.effect));
+  const double strength = test::skip_threshold(test::quiet_mission(), c);
+  ASSERT_GT(strength, 0.0) << "the effect is never left out";
+  mission = test::quiet_mission();
+  c.set(mission, strength);
+  const Planned p = planned(mission);
   ASSERT_FALSE(p.plan->runs(c.effect));
   // The mean over many exposures: particles are rare, and what they do is a bias and a variance.
   constexpr int kExposures = 32;
@@ -108,7 +64,7 @@ TEST_P(SkippedPixelEffect, MovesNoFluxBeyondItsTolerance) {
     worst_variance = std::max(worst_variance, square[i] / (flux + 36.0 * 400.0));
   }
   std::printf("%s at %.3g: moves a mean flux by at most %.2g of its tolerance, adds %.2g of its variance\n", c.effect,
-              low, worst_bias, worst_variance);
+              strength, worst_bias, worst_variance);
   EXPECT_LE(worst_bias, 1.0);
   EXPECT_LE(worst_variance, kVarianceTolerance);
   const bool rare = std::string(c.effect) == "cosmic-rays";
@@ -143,9 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
                  },
                  1.0}),
     [](const testing::TestParamInfo<SkipCase>& parameter) {
-      std::string name = parameter.param.effect;
-      std::erase(name, '-');
-      return name + std::to_string(parameter.index);
+      return test::test_name(parameter.param.effect) + std::to_string(parameter.index);
     });
 
 }  // namespace

@@ -7,86 +7,42 @@
 #include <functional>
 
 #include "astroid/core/detector_noise.hpp"
-#include "astroid/sim/simulator.hpp"
-#include "astroid/test/scenes.hpp"
+#include "astroid/test/skip_threshold.hpp"
 
 namespace astroid {
 namespace {
 
-constexpr int kSide = 96;
-
-std::vector<test::LabStar> field() {
-  std::vector<test::LabStar> stars;
-  for (int i = 0; i < 9; ++i)
-    stars.push_back(
-        {16.0 + 32.0 * (i % 3) + 0.11 * i - 0.4, 16.0 + 32.0 * (i / 3) - 0.09 * i + 0.3, 3e3 * std::pow(2.0, i)});
-  return stars;
-}
+using test::planned;
+using test::Planned;
+using test::SkipCase;
+using test::with_effect;
 
 Mission quiet_mission() {
-  Mission mission = test::bare_mission(kSide, kSide);
+  Mission mission = test::bare_mission(test::kSkipSide, test::kSkipSide);
   mission.simulation.type = DetectorType::kCmos;
   mission.ccd.gain = Gain(0.05);
   mission.ccd.bias = Adu(2000.0);
   return mission;
 }
 
-struct Planned {
-  std::shared_ptr<const Scene> scene;
-  std::shared_ptr<Plan> plan;
-};
-Planned planned(const Mission& mission) {
-  Planned p;
-  p.scene = std::make_shared<const Scene>(mission, test::lab_catalogue(field()));
-  p.plan = std::make_shared<Plan>(make_plan(*p.scene));
-  return p;
-}
-
-using Setter = std::function<void(Mission&, double)>;
-
-/// The largest strength (to 1 %) at which the plan leaves the effect out.
-double threshold(const std::string& effect, const Setter& set, double high) {
-  double low = 0.0;
-  for (int i = 0; i < 60 && high - low > 0.01 * low; ++i) {
-    const double middle = 0.5 * (low + high);
-    Mission mission = quiet_mission();
-    set(mission, middle);
-    (planned(mission).plan->runs(effect) ? high : low) = middle;
-  }
-  return low;
-}
-
-void force(Plan& plan, const std::string& effect, bool runs) {
-  for (PlannedEffect& e : plan.effects)
-    if (e.effect->spec().name == effect) e.need.needed = runs;
+double threshold(const char* effect, const test::SetStrength& set, double high) {
+  return test::skip_threshold(quiet_mission(), {effect, set, high});
 }
 
 /// Electrons before they are digitised in 6 x 6 px around each star: rounding would hide what is looked for.
-std::vector<double> fluxes(const Planned& p, const Plan& plan, std::int64_t exposure) {
-  const Simulator simulator(p.scene, std::make_shared<const Plan>(plan), 0);
+std::vector<double> fluxes(const Planned& p, const std::shared_ptr<const Plan>& plan, std::int64_t exposure) {
+  const Simulator simulator(p.scene, plan, 0);
   ExposureState state = simulator.make_state();
   const CcdSettings& ccd = p.scene->mission().ccd;
+  constexpr double kPixels = 36.0;
   std::vector<double> sums;
   simulator.simulate(exposure, state, [&](const EffectSpec& spec, const ExposureState& seen) {
     if (spec.name != "adc") return;
-    const auto analog = seen.analog.whole().view(0);
-    for (const SceneStar& star : p.scene->stars()) {
-      double sum = 0.0;
-      const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
-      const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
-      for (int y = y0; y < y0 + 6; ++y)
-        for (int x = x0; x < x0 + 6; ++x) sum += (analog.at(x, y) - ccd.bias.value()) * ccd.gain.value();
-      sums.push_back(sum);
-    }
+    sums = test::star_sums(*p.scene, seen.analog.whole().view(0));
+    for (double& sum : sums) sum = (sum - kPixels * ccd.bias.value()) * ccd.gain.value();
   });
   return sums;
 }
-
-struct SkipCase {
-  const char* effect;
-  Setter set;
-  double high;  ///< surely needed
-};
 
 class CmosSkippedBelowThreshold : public testing::TestWithParam<SkipCase> {};
 
@@ -98,16 +54,11 @@ TEST_P(CmosSkippedBelowThreshold, IsHarmless) {
   c.set(mission, strength);
   const Planned p = planned(mission);
   ASSERT_FALSE(p.plan->runs(c.effect));
-  Plan without = *p.plan;
-  force(without, "photon-noise", false);
-  Plan with = without;
-  force(with, c.effect, true);
+  const std::shared_ptr<const Plan> without = with_effect(*p.plan, "photon-noise", false);
+  const std::shared_ptr<const Plan> with = with_effect(*without, c.effect);
   double worst = 0.0;
   for (const std::int64_t exposure : {0, 1, 2, 3}) {
-    const std::vector<double> a = fluxes(p, without, exposure);
-    const std::vector<double> b = fluxes(p, with, exposure);
-    for (std::size_t i = 0; i < a.size(); ++i)
-      worst = std::max(worst, std::abs(b[i] - a[i]) / p.scene->summary().flux_tolerance(p.scene->stars()[i].electrons));
+    worst = std::max(worst, test::worst_change(*p.scene, fluxes(p, without, exposure), fluxes(p, with, exposure)));
   }
   std::printf("%s at %.3g: moves a flux by at most %.2f of its tolerance\n", c.effect, strength, worst);
   EXPECT_LE(worst, 1.0);
@@ -126,11 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
                                m.cmos.telegraph_low = m.cmos.telegraph_high = Seconds(50.0);
                              },
                              10.0}),
-    [](const testing::TestParamInfo<SkipCase>& parameter) {
-      std::string name = parameter.param.effect;
-      std::erase(name, '-');
-      return name;
-    });
+    [](const testing::TestParamInfo<SkipCase>& parameter) { return test::test_name(parameter.param.effect); });
 
 TEST(CmosSkippedBelowThreshold, NoiseIsHarmless) {
   // Variance that 36 pixels would add, against the photon noise of the faintest star.
@@ -166,10 +113,9 @@ TEST(CmosSkippedBelowThreshold, SaturationIsNeverReached) {
   mission.ccd.full_well = Electrons(1.0 / inverse);
   const Planned p = planned(mission);
   ASSERT_FALSE(p.plan->runs("pixel-saturation"));
-  Plan with = *p.plan;
-  force(with, "pixel-saturation", true);
+  const std::shared_ptr<const Plan> with = with_effect(*p.plan, "pixel-saturation");
   for (const std::int64_t exposure : {0, 1, 2, 3, 4, 5, 6, 7})
-    EXPECT_EQ(fluxes(p, *p.plan, exposure), fluxes(p, with, exposure));
+    EXPECT_EQ(fluxes(p, p.plan, exposure), fluxes(p, with, exposure));
 }
 
 }  // namespace

@@ -1,5 +1,7 @@
 // Skipping is a claim about accuracy: an effect just below its threshold, run anyway, moves no star's flux by more than
 // the tolerance, and adds no more than the allowed variance.
+#include "astroid/test/skip_threshold.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -7,59 +9,17 @@
 #include <functional>
 #include <numeric>
 
-#include "astroid/sim/simulator.hpp"
-#include "astroid/test/scenes.hpp"
-
 namespace astroid {
 namespace {
 
-constexpr int kSide = 96;
+using test::planned;
+using test::Planned;
+using test::quiet_mission;
+using test::SkipCase;
+using test::with_effect;
 
-std::vector<test::LabStar> field() {
-  std::vector<test::LabStar> stars;
-  for (int i = 0; i < 9; ++i)
-    stars.push_back(
-        {16.0 + 32.0 * (i % 3) + 0.11 * i - 0.4, 16.0 + 32.0 * (i / 3) - 0.09 * i + 0.3, 3e3 * std::pow(2.0, i)});
-  return stars;
-}
-
-/// Photon noise and readout noise alone; effects under test are added with a strength.
-Mission quiet_mission() {
-  Mission mission = test::bare_mission(kSide, kSide);
-  mission.ccd.readout_noise = Electrons(20.0);
-  mission.simulation.exposures = 32;
-  return mission;
-}
-
-struct Planned {
-  std::shared_ptr<const Scene> scene;
-  std::shared_ptr<Plan> plan;
-};
-Planned planned(const Mission& mission) {
-  Planned p;
-  p.scene = std::make_shared<const Scene>(mission, test::lab_catalogue(field()));
-  p.plan = std::make_shared<Plan>(make_plan(*p.scene));
-  return p;
-}
-
-/// The largest strength (to 1 %) at which the plan leaves the effect out. `set` puts a strength into a mission.
-double threshold(const std::string& effect, const std::function<void(Mission&, double)>& set, double high) {
-  double low = 0.0;
-  for (int i = 0; i < 60 && high - low > 0.01 * high; ++i) {
-    const double middle = 0.5 * (low + high);
-    Mission mission = quiet_mission();
-    set(mission, middle);
-    (planned(mission).plan->runs(effect) ? high : low) = middle;
-  }
-  return low;
-}
-
-/// The same plan with one effect switched on.
-std::shared_ptr<const Plan> with_effect(const Plan& plan, const std::string& name) {
-  auto changed = std::make_shared<Plan>(plan);
-  for (PlannedEffect& effect : changed->effects)
-    if (effect.effect->spec().name == name) effect.need.needed = true;
-  return changed;
+double threshold(const char* effect, const test::SetStrength& set, double high) {
+  return test::skip_threshold(quiet_mission(), {effect, set, high});
 }
 
 /// Expected electrons in 6 x 6 px around each star.
@@ -67,23 +27,8 @@ std::vector<double> fluxes(const Planned& p, const std::shared_ptr<const Plan>& 
   const Simulator simulator(p.scene, plan, 0);
   ExposureState state = simulator.make_state();
   simulator.expect(exposure, state);
-  std::vector<double> sums;
-  for (const SceneStar& star : p.scene->stars()) {
-    double sum = 0.0;
-    const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
-    const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
-    for (int y = y0; y < y0 + 6; ++y)
-      for (int x = x0; x < x0 + 6; ++x) sum += state.expected.whole().view(0).at(x, y);
-    sums.push_back(sum);
-  }
-  return sums;
+  return test::star_sums(*p.scene, state.expected.whole().view(0));
 }
-
-struct SkipCase {
-  const char* effect;
-  std::function<void(Mission&, double)> set;
-  double high;  ///< surely needed
-};
 
 class SkippedBelowThreshold : public testing::TestWithParam<SkipCase> {};
 
@@ -152,11 +97,7 @@ INSTANTIATE_TEST_SUITE_P(
                  },
                  1.0},
         SkipCase{"prnu", [](Mission& m, double v) { m.ccd.prnu = v; }, 0.1}),
-    [](const testing::TestParamInfo<SkipCase>& parameter) {
-      std::string name = parameter.param.effect;
-      std::erase(name, '-');
-      return name;
-    });
+    [](const testing::TestParamInfo<SkipCase>& parameter) { return test::test_name(parameter.param.effect); });
 
 TEST(SkippedBelowThreshold, JitterIsHarmless) {
   const auto set = [](Mission& m, double arcsec) {
@@ -256,15 +197,8 @@ std::vector<double> read_fluxes(const Planned& p, const std::shared_ptr<const Pl
   const Simulator simulator(p.scene, plan, 0);
   ExposureState state = simulator.make_state();
   simulator.simulate(exposure, state, [](const EffectSpec&, const ExposureState&) {});  // so that planes are whole
-  std::vector<double> sums;
-  for (const SceneStar& star : p.scene->stars()) {
-    double sum = 0.0;
-    const int x0 = static_cast<int>(std::floor(star.position.x)) - 2;
-    const int y0 = static_cast<int>(std::floor(star.position.y)) - 2;
-    for (int y = y0; y < y0 + 6; ++y)
-      for (int x = x0; x < x0 + 6; ++x) sum += state.analog.whole().view(0).at(x, y);
-    sums.push_back(sum * p.scene->mission().ccd.gain.value());
-  }
+  std::vector<double> sums = test::star_sums(*p.scene, state.analog.whole().view(0));
+  for (double& sum : sums) sum *= p.scene->mission().ccd.gain.value();
   return sums;
 }
 
@@ -291,25 +225,21 @@ TEST_P(ReadoutSkippedBelowThreshold, IsHarmless) {
   EXPECT_GT(worst, 0.0) << "the effect did nothing: was it run?";
 }
 
-INSTANTIATE_TEST_SUITE_P(Effects, ReadoutSkippedBelowThreshold,
-                         testing::Values(SkipCase{"non-linearity",
-                                                  [](Mission& m, double v) {
-                                                    m.ccd.electronics.nonlinearity = {0.0, v, 0.0};
-                                                  },
-                                                  1.0},
-                                         SkipCase{"bias-drift",
-                                                  [](Mission& m, double v) { m.ccd.electronics.bias_drift = v; }, 10.0},
-                                         SkipCase{"cross-talk",
-                                                  [](Mission& m, double v) {
-                                                    m.ccd.nodes.count = 4;
-                                                    m.ccd.nodes.cross_talk = v;
-                                                  },
-                                                  0.1}),
-                         [](const testing::TestParamInfo<SkipCase>& parameter) {
-                           std::string name = parameter.param.effect;
-                           std::erase(name, '-');
-                           return name;
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Effects, ReadoutSkippedBelowThreshold,
+    testing::Values(SkipCase{"non-linearity",
+                             [](Mission& m, double v) {
+                               m.ccd.electronics.nonlinearity = {0.0, v, 0.0};
+                             },
+                             1.0},
+                    SkipCase{"bias-drift", [](Mission& m, double v) { m.ccd.electronics.bias_drift = v; }, 10.0},
+                    SkipCase{"cross-talk",
+                             [](Mission& m, double v) {
+                               m.ccd.nodes.count = 4;
+                               m.ccd.nodes.cross_talk = v;
+                             },
+                             0.1}),
+    [](const testing::TestParamInfo<SkipCase>& parameter) { return test::test_name(parameter.param.effect); });
 
 TEST(SkippedBelowThreshold, PickUpNoiseIsHarmless) {
   const auto set = [](Mission& m, double adu) {
