@@ -19,7 +19,8 @@ struct CircularProfile {
 ///
 /// The total is what falls into the square, not 1: 1 minus it is the light beyond.
 /// @param samples_per_pixel  even   @param half_width  px, of the square
-/// @accuracy  1e-11 of a cell's flux (test: CircularProfile.HasTheFluxOfAdaptiveQuadrature)
+/// @accuracy  1e-11 of a cell's flux (tests: Moffat.HasTheFluxOfAdaptiveQuadrature,
+/// Airy.HasTheFluxOfAdaptiveQuadrature)
 PsfTable flux_table(const CircularProfile& profile, int samples_per_pixel, int half_width);
 
 }  // namespace astroid::detail

@@ -63,7 +63,7 @@ struct StarCost {
 };
 constexpr StarCost kAnalytic{.star = 70.0, .row = 5.0, .pixel = 0.1, .broadening = 1.7};
 constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5.0};
-/// Of the sub-pixel renderer (bench: BM_SubPixel).
+/// Of the sub-pixel renderer (bench: BM_SubPixelFrame).
 constexpr double kMapNode = 11.0;    ///< ns a node of the map
 constexpr double kDeposit = 3500.0;  ///< ns a star, once for each tile that it reaches
 constexpr double kMapCell = 15.0;    ///< ns a cell of the light

@@ -191,4 +191,25 @@ def workflows(tree):
         yield "CMakePresets.json: the workflow ci must end with the tests"
 
 
-ALL = {check.__name__: check for check in (layering, sizes, binaries, references, guides, forbidden, workflows)}
+def evidence(tree):
+    """A test or benchmark that a comment of a library calls as witness exists."""
+    tests, benchmarks = set(), set()
+    for name in tree.code():
+        if name.startswith("tests/"):
+            text = tree.text(name)
+            tests.update(f"{suite}.{test}" for suite, test in re.findall(r"\bTEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text))
+            benchmarks.update(re.findall(r"\bBM_\w+", text) if name.startswith("tests/bench/") else ())
+    for name in tree.code():
+        if not is_library(name):
+            continue
+        text = re.sub(r"\n\s*///?", "", tree.text(name))
+        for named in re.findall(r"\btests?: ((?:\w+\.\w+(?:, | and )?)+)", text):
+            for test in re.findall(r"\w+\.\w+", named):
+                if test not in tests:
+                    yield f"{name}: there is no test {test}"
+        for benchmark in re.findall(r"\bBM_\w+", text):
+            if benchmark not in benchmarks:
+                yield f"{name}: there is no benchmark {benchmark}"
+
+
+ALL = {check.__name__: check for check in (layering, sizes, binaries, references, guides, forbidden, workflows, evidence)}

@@ -124,6 +124,14 @@ class ChecksOfTheTree(unittest.TestCase):
         self.write("CMakePresets.json", json.dumps({"workflowPresets": [workflow("check", "dev", steps), workflow("ci", "ci", steps[:-1])]}))
         self.expect(checks.workflows, "check runs", "must end with the tests")
 
+    def test_evidence_must_exist(self):
+        self.write("tests/unit/core/a_test.cpp", "TEST(Sum, IsExact) {}\nTEST_P(Sum,\n       OfNothing) {}\n")
+        self.write("tests/bench/a_bench.cpp", "void BM_Sum(benchmark::State& state);\n")
+        self.write("core/include/astroid/core/a.hpp", "/// @accuracy exact (tests: Sum.IsExact,\n/// Sum.OfNothing)  @complexity (bench: BM_Sum)\n")
+        self.expect(checks.evidence)
+        self.write("core/include/astroid/core/b.hpp", "/// @accuracy (test: Sum.IsRound) (bench: BM_Product)\n")
+        self.expect(checks.evidence, "no test Sum.IsRound", "no benchmark BM_Product")
+
     def test_comments_are_blanked_and_lines_kept(self):
         self.assertEqual(without_comments('a; // b\n"c\\"d" /* e\nf */ g'), "a;     \n" + " " * 11 + "\n" + " " * 5 + "g")
 

@@ -25,7 +25,7 @@ struct TrapPassage {
 /// A packet of at most 1e-30 e- captures nothing. What a packet loses the traps gain, so charge + filled is conserved.
 /// @param charge  [in,out] e-, never made negative.  @param filled  [in,out] traps that hold an electron.
 /// @accuracy      of logarithm and exponentials: relative 1e-14 (test: TrapPassage.AgreesWithThePlainFormula).
-/// @throws BugError when the spans differ in size.  @complexity some 90 operations a packet (bench: BM_Charge)
+/// @throws BugError when the spans differ in size.  @complexity some 90 operations a packet (bench: BM_Traps)
 /// @source Short2013, Eqs. 22 and 23.
 void pass_traps(const TrapPassage& passage, std::span<double> charge, std::span<double> filled);
 

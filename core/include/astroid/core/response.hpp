@@ -33,7 +33,7 @@ ElectronicResponse make_response(std::span<const double> coefficients);
 void bend(const ElectronicResponse& response, double bias, std::span<double> values);
 
 /// counts[i] = bias + in(counts[i] - bias), in double and rounded to float at the end.
-/// @complexity  O(counts), a root and a division each (bench: BM_Unbend)
+/// @complexity  O(counts), a root and a division each (bench: BM_Calibrate)
 void unbend(const ElectronicResponse& response, double bias, std::span<float> counts);
 
 }  // namespace astroid

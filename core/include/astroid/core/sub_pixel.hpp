@@ -50,7 +50,7 @@ NegativeLight silence(std::span<double> light, double limit);
 /// Tiles are laid out from the detector's first pixel and depend on nothing else, so that a window and the full frame
 /// have the same bits. @accuracy  predicted_error(); bits may differ between processors (FFTW).
 /// @source MarcosArenal2014 for the method (F100, F101), Beatty2005 and Barnett2019 for the spread.  @complexity
-/// (bench: BM_SubPixel)
+/// (bench: BM_SubPixelFrame)
 class SubPixelRenderer {
  public:
   /// @throws InputError when the PSF needs a finer map than 128 sub-pixels, or the smallest tile more than the memory.

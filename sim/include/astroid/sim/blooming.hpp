@@ -17,7 +17,8 @@ namespace astroid {
 /// @param full_well  e-, > 0. Afterwards no pixel is above it.
 /// @param flags      [in,out] gains pixel_flag::kFullWell where a pixel was full, spilt charge or received some.
 /// @returns  electrons lost through the edges. @complexity O(pixels) @rng none @thread safe
-/// @source Jannsen2024; differs: one conserving sweep instead of repeated passes (test: Blooming.ConservesCharge).
+/// @source Jannsen2024; differs: one conserving sweep instead of repeated passes (test:
+/// Blooming.ConservesChargeInAnyColumn).
 double bloom(const ImageView<double, unit::SampledElectrons>& electrons, double full_well,
              const ImageView<std::uint8_t, unit::Flags>* flags = nullptr);
 

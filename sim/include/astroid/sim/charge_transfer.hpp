@@ -58,7 +58,7 @@ struct TrapModel {
 /// @returns  electrons that stay in traps behind the last packet. Before = after + returned, relative 1e-12
 ///           (test: Traps.ConserveCharge).
 /// @valid    charge >= 0; a packet's result depends on all packets before it.
-/// @complexity  O(pixels x species) (bench: BM_Charge)  @rng none  @thread safe
+/// @complexity  O(pixels x species) (bench: BM_Traps)  @rng none  @thread safe
 /// @source Short2013, Eqs. 22 and 23; Jannsen2024 for gamma = 2 N density / (FW^beta (1 + beta)) and the volume of half
 /// a pixel 1 µm deep.
 double transfer_through_traps(const TransferChain& chain, const TrapModel& model);
