@@ -41,7 +41,7 @@ std::shared_ptr<const Distortion> make_distortion(const Mission& mission) {
 CameraPointing make_pointing(const Mission& mission) {
   const CcdSettings& ccd = mission.ccd;
   return {.axis = {mission.satellite.ra.value(), mission.satellite.dec.value()},
-          .roll = mission.satellite.roll,
+          .roll = mission.satellite.roll + mission.simulation.quarter * mission.satellite.repointing.turn,
           .scale = ccd.pixel_scale,
           .axis_pixel = {ccd.axis_x, ccd.axis_y},
           .projection = ccd.projection,

@@ -14,6 +14,7 @@
 #include "astroid/sim/accuracy_shares.hpp"
 #include "astroid/sim/effect_table.hpp"
 #include "plan_cost.hpp"
+#include "plan_memory.hpp"
 #include "plan_motion.hpp"
 #include "reference_pixels.hpp"
 
@@ -135,7 +136,7 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
     if (pixels > scene.detector().size()) regions = {scene.detector()};
   }
   if (std::ranges::equal(regions, exposed)) return scene.layout();
-  const std::vector<Rectangle> reference = reference_regions(regions, scene.detector(), scene.mission().ccd.reference);
+  const std::vector<Rectangle> reference = reference_regions(regions, scene.detector(), scene.mission().ccd.reference, scene.mission().ccd.nodes.count);
   return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 
@@ -167,7 +168,10 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   bool moves = false;
   for (const auto& effect : effect_table(scene.mission().simulation.type)) {
     PlannedEffect planned{.effect = effect.get(), .need = effect->is_needed(summary)};
-    moves = moves || (planned.need.needed && (effect->spec().writes & plane_bit::kAttitude) != 0);
+    // What reads the attitude makes something else of it, but only where something moves.
+    const EffectSpec& spec = effect->spec();
+    const bool moving = (spec.writes & plane_bit::kAttitude) != 0 && (spec.reads & plane_bit::kAttitude) == 0;
+    moves = moves || (planned.need.needed && moving);
     plan.effects.push_back(std::move(planned));
   }
   plan.reads = scene.mission().simulation.type == DetectorType::kCmos ? scene.mission().cmos.reads : 1;
@@ -185,7 +189,9 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   plan.knobs.variables = plan.runs("variable-stars");
   plan.knobs.stamps = plan_stamps(scene, kAccuracyShares.stamps, plan.stamp_error);
   if (moves) plan_jitter(scene, kAccuracyShares.jitter, plan);
+  if (moves) plan_bands(scene, plan);
   if (moves && steady) plan_polynomial(scene, kAccuracyShares.jitter, plan);
+  plan_memory(scene, plan);
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
   if (map != nullptr && plan.knobs.variables && scene.mission().psf.intra_pixel.flat > 0.0)

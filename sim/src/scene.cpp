@@ -34,23 +34,25 @@ namespace {
 /// A star this far outside the frame gives less than this share of its light to it.
 constexpr double kNegligibleShare = 1e-12;
 
-/// Attitude is the spacecraft's: camera and detector stay out of the address, so cameras share it.
-RandomStream attitude_stream(const Mission& mission, StreamId effect) {
-  return make_stream(mission.simulation.seed, effect, 0, 0);
+/// Attitude is the spacecraft's: camera and detector stay out of the address, so cameras share it. Jitter has the
+/// quarter there instead, for its steps are counted from the start of the run.
+RandomStream attitude_stream(const Mission& mission, StreamId effect, std::uint32_t quarter = 0) {
+  return make_stream(mission.simulation.seed, effect, 0, quarter);
 }
 
 std::shared_ptr<const AttitudeModel> make_jitter(const Mission& mission) {
   const JitterSettings& jitter = mission.satellite.jitter;
+  const RandomStream stream =
+      attitude_stream(mission, JitterModelEffect::kSpec.id, static_cast<std::uint32_t>(mission.simulation.quarter));
   switch (mission.satellite.jitter.model) {
     case JitterModel::kNone:
       return make_still_attitude();
     case JitterModel::kRedNoise:
-      return make_red_noise_attitude(jitter, mission.simulation, attitude_stream(mission, JitterModelEffect::kSpec.id));
+      return make_red_noise_attitude(jitter, mission.simulation, stream);
     case JitterModel::kFile:
       return make_file_attitude(jitter.file, mission.simulation);
     case JitterModel::kSpectrum:
-      return make_spectrum_attitude(read_jitter_spectrum(jitter.file), jitter.file, mission.simulation,
-                                    attitude_stream(mission, JitterModelEffect::kSpec.id));
+      return make_spectrum_attitude(read_jitter_spectrum(jitter.file), jitter.file, mission.simulation, stream);
   }
   throw BugError("unknown jitter model");
 }
@@ -162,6 +164,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   repointing_ = repointing_error(satellite, mission_.simulation, attitude_stream(mission_, RepointingEffect::kSpec.id));
   trend_ = drift_ + repointing_;
   attitude_ = make_drifting_attitude(jitter_, trend_, mission_.simulation);
+  if (mission_.cmos.line_time.value() > 0.0) (void)gapless_attitude({.jitter = true});  // which a file may not cover
+  bad_pixels_ = read_bad_pixels(mission_);
   const CameraPointing pointing = make_pointing(mission_);
   projection_.emplace(pointing);
 
@@ -251,11 +255,14 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
         .expected = "targets on the detector",
         .message =
             fmt::format("none of the {} stars is a target, so there is no window to compute", catalogue.stars.size())});
-  std::vector<Rectangle> reference = reference_regions(regions, detector(), ccd.reference);
+  std::vector<Rectangle> reference = reference_regions(regions, detector(), ccd.reference, ccd.nodes.count);
   layout_ = std::make_shared<const PixelLayout>(std::move(regions), reference);
 
   SceneSummary& s = summary_;
   s.mission = &mission_;
+  s.listed_dead = bad_pixels_.dead.size();
+  s.listed_hot = bad_pixels_.hot.size();
+  for (const HotPixel& hot : bad_pixels_.hot) s.hottest = std::max(s.hottest, hot.current.value() * exposure);
   s.psf = measure_sensitivity(*psf_);
   s.accuracy = 1e-6 * mission_.simulation.accuracy.value();
   s.cameras = mission_.telescope.cameras;
@@ -283,6 +290,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     s.attitude_rms_px = std::max(s.attitude_rms_px, rms_px(star.motion, jitter));
     s.attitude_rms_in_exposure_px = std::max(s.attitude_rms_in_exposure_px, rms_px(star.motion, within));
     s.drift_px = std::max(s.drift_px, farthest_px(star.motion, drift_.farthest()));
+    s.drift_px_per_second = std::max(s.drift_px_per_second, farthest_px(star.motion, trend_.fastest()));
     s.repointing_px = std::max(s.repointing_px, farthest_px(star.motion, repointing_.farthest()));
     for (const Velocity& v : velocity) {
       const PixelShift shift = star.aberration.displacement(v);
@@ -327,7 +335,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
 
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {
   if (mission_.field.variables.empty()) return;
-  variables_ = read_variables(mission_.field.variables, 2.0 * middle_of_run(mission_.simulation).value());
+  variables_ = read_variables(mission_.field.variables,
+                              (quarter_start(mission_) + 2.0 * middle_of_run(mission_.simulation)).value());
   std::unordered_map<std::string, int> number;
   for (std::size_t i = 0; i < variables_.size(); ++i) number[variables_[i].id] = static_cast<int>(i);
   std::unordered_set<std::string> known;
@@ -384,6 +393,15 @@ std::shared_ptr<const AttitudeModel> Scene::attitude(const AttitudeParts& parts)
                                 mission_.simulation);
 }
 
+std::shared_ptr<const AttitudeModel> Scene::gapless_attitude(const AttitudeParts& parts) const {
+  Mission gapless = mission_;
+  gapless.simulation.exposure_time = gapless.simulation.cycle;
+  const AttitudeTrend drift = parts.drift ? drift_ : AttitudeTrend();
+  const AttitudeTrend repointing = parts.repointing ? repointing_ : AttitudeTrend();
+  return make_drifting_attitude(parts.jitter ? make_jitter(gapless) : make_still_attitude(), drift + repointing,
+                                gapless.simulation);
+}
+
 void Scene::add_ghost(const SceneStar& star, SkyPosition direction) {
   const GhostSettings& settings = mission_.telescope.ghosts;
   if (!(settings.fraction > 0.0) || !(star.magnitude < settings.brighter_than) || !(star.electrons > 0.0)) return;
@@ -396,6 +414,15 @@ void Scene::add_ghost(const SceneStar& star, SkyPosition direction) {
   const AttitudeJacobian j = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
   ghost.motion = {-j.dx_dyaw, -j.dx_dpitch, -j.dx_droll, -j.dy_dyaw, -j.dy_dpitch, -j.dy_droll};
   ghosts_.push_back(ghost);
+}
+
+Seconds Scene::mission_time(std::int64_t exposure) const {
+  return quarter_start(mission_) + mid_time(exposure);
+}
+
+std::int64_t Scene::mission_number(std::int64_t exposure) const {
+  const double before = std::ceil(quarter_start(mission_) / mission_.simulation.cycle);
+  return exposure + static_cast<std::int64_t>(before);
 }
 
 Seconds Scene::mid_time(std::int64_t exposure) const {

@@ -146,7 +146,8 @@ void write_reference_pixels(FitsWriter& fits, const Frame& frame, FitsNumber num
   for (std::size_t r = layout.exposed_regions().size(); r < layout.regions().size(); ++r) {
     const Rectangle& area = layout.regions()[r];
     const bool is_prescan = area.x1() <= detector.x0;
-    const std::string name = is_prescan ? "PRESCAN" : area.y0 >= detector.y1() ? "OVERSCAN" : "SERIAL-OVERSCAN";
+    const bool is_overscan = area.y0 >= detector.y1() || area.y1() <= detector.y0;
+    const std::string name = is_prescan ? "PRESCAN" : is_overscan ? "OVERSCAN" : "SERIAL-OVERSCAN";
     fits.begin_image(number, {area.nx, area.ny}, name);
     fits.card({"EXTVER", ++versions[name], "number among those of this name"});
     fits.card({"BUNIT", "adu", "unit of the pixels"});

@@ -61,6 +61,10 @@ void believe_readout(const Scene& scene, GroundModel& model) {
   const CcdSettings& ccd = scene.mission().ccd;
   const FrameCalibration calibration(*scene.layout(), calibration_model(scene.mission()));
   model.smearing.electrons = smeared_electrons(scene);
+  if (const ReadoutNodes nodes = readout_nodes(scene); nodes.splits_columns()) {
+    model.smearing.upper = smeared_electrons(scene, 1);
+    model.smearing.upper_row = nodes.middle_y();
+  }
   model.smearing.overscan_rows = calibration.overscan_rows();
   model.bias_variance = calibration.bias_variance();
   model.bias_is_measured = scene.mission().photometry.calibration.bias == BiasSource::kPrescan;

@@ -27,4 +27,11 @@ struct Mission {
   friend bool operator==(const Mission&, const Mission&) = default;
 };
 
+/// Time from the start of the mission (quarter 0) to that of the run. What is periodic, ages or varies goes on from
+/// quarter to quarter.
+inline Seconds quarter_start(const Mission& mission) {
+  constexpr double kSecondsPerDay = 86400.0;
+  return Seconds(static_cast<double>(mission.simulation.quarter) * mission.satellite.quarter_days * kSecondsPerDay);
+}
+
 }  // namespace astroid

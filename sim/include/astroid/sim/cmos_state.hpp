@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "astroid/core/image.hpp"
+#include "astroid/sim/persistence.hpp"
 #include "astroid/sim/ramp_fit.hpp"
 #include "astroid/sim/strip.hpp"
 #include "astroid/sim/telegraph.hpp"
@@ -21,6 +22,7 @@ struct CmosPatterns {
   std::vector<TelegraphPixel> telegraph;       ///< in the order of the layout
   std::vector<std::size_t> telegraph_at;       ///< where each is in the buffer
   std::shared_ptr<const RampLadder> ladder;    ///< null where an exposure is read once
+  std::shared_ptr<const PersistenceKernel> persistence;  ///< null where the effect is off
 };
 
 /// The ramps of one exposure.

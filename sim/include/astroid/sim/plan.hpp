@@ -38,6 +38,9 @@ struct PlanKnobs {
   AttitudePolynomial polynomial;  ///< no terms unless the treatment is kPolynomial
   std::vector<StampTier> stamps;  ///< brightest first
   bool variables = false;         ///< whether variable stars are rendered apart from the others
+  int band_rows = 0;              ///< rows that are taken to be exposed at once, with a rolling shutter; 0: all
+  /// Exposures whose charge is taken to be that of the first of them, where it is released later; 0: all of the run.
+  std::int64_t memory_block = 0;
   [[nodiscard]] double stamp_half_width(double electrons) const;
 };
 

@@ -19,7 +19,8 @@ struct SimulationSettings {
   Seconds cycle{25.0};
   Seconds exposure_time{21.0};
   std::string start = "2027-01-01T00:00:00";  ///< TDB, ISO 8601
-  double start_mjd = 61406.0;                 ///< the same as MJD (TDB), filled by the reader
+  double start_mjd = 61406.0;                 ///< the same of `quarter` as MJD (TDB), filled by the reader
+  int quarter = 0;                            ///< of the mission that the run belongs to; `start` is that of quarter 0
   Renderer renderer = Renderer::kAuto;
   int sub_pixels = 0;  ///< per pixel and axis, of the sub-pixel renderer; 0: from the accuracy
 
