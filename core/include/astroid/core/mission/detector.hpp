@@ -123,7 +123,7 @@ struct BadPixelSettings {
   double dead = 0.0;  ///< fraction that sees no light
   double hot = 0.0;   ///< fraction with a large dark current
   ElectronsPerSecond hot_current{1000.0};
-  std::string file;  ///< absolute path of a list or mask of others, the same in all cameras; empty: none
+  std::string file{};  ///< absolute path of a list or mask of others, the same in all cameras; empty: none
 
   friend bool operator==(const BadPixelSettings&, const BadPixelSettings&) = default;
 };
