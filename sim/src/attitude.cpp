@@ -65,6 +65,9 @@ class StillAttitude final : public AttitudeModel {
   }
   [[nodiscard]] AttitudeVariance variance() const override { return {}; }
   [[nodiscard]] AttitudeVariance variance_of_mean(std::int64_t /*exposures*/) const override { return {}; }
+  [[nodiscard]] AttitudeVariance covariance_of_mean(std::int64_t /*exposures*/, Seconds /*lag*/) const override {
+    return {};
+  }
   [[nodiscard]] int steps_for(double /*fraction*/) const override { return 1; }
   [[nodiscard]] std::string description() const override { return "the spacecraft does not move"; }
 };

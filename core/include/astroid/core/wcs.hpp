@@ -8,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "astroid/core/boresight.hpp"
 #include "astroid/core/distortion.hpp"
 #include "astroid/core/fits_card.hpp"
 #include "astroid/core/geometry.hpp"
@@ -31,6 +32,8 @@ struct CameraPointing {
   std::shared_ptr<const Distortion> distortion{};
   /// Pixels that headers have to describe; asked for where a distortion is given.
   Rectangle detector{};
+  /// About whose axes yaw, pitch and roll turn; nothing: those of this camera.
+  std::optional<Boresight> spacecraft{};
 };
 
 /// The zenithal projections of FITS WCS that a pointing may use: TAN, SIN, ARC, STG, ZEA.  @source Calabretta2002 §5.1
@@ -51,6 +54,8 @@ inline constexpr double kHeaderTolerance = 1e-3;
 /// Yaw turns the camera about its own y axis, pitch about its x axis, roll about the optical axis; the signs are those
 /// by which the *stars* move: on the axis yaw moves them by +1/scale along x and pitch by +1/scale along y, roll moves
 /// them counter-clockwise, from +x to +y. For any projection and place in the field; to first order in the angles.
+/// Where the camera is tilted on its spacecraft, the axes are those of a camera that looks along the spacecraft's
+/// boresight (F110).
 struct AttitudeJacobian {
   double dx_dyaw = 0.0;
   double dx_dpitch = 0.0;
