@@ -116,11 +116,11 @@ PredictedNoise predict_mean_noise(const StarEstimator& estimator, const MotionNo
 
 TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estimator, const StarMotion& motion,
                              const RunSetup& setup) {
-  return predict_target(truth, estimator, predict_noise(estimator, motion, setup), setup);
+  return predict_mean_target(truth, estimator, predict_noise(estimator, motion, setup), setup);
 }
 
-TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estimator, const PredictedNoise& noise,
-                             const RunSetup& setup) {
+TargetMetrics predict_mean_target(const TruthStar& truth, const StarEstimator& estimator, const PredictedNoise& noise,
+                                  const RunSetup& setup) {
   TargetMetrics target;
   target.id = truth.id;
   target.mag = truth.magnitude;

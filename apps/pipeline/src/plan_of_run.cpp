@@ -50,7 +50,7 @@ std::string plan_text(const PreparedRun& run) {
   for (std::size_t g = 1; g < run.groups.size(); ++g) {
     out += fmt::format("\nGroup {}. The same, but for\n\n", g + 1);
     for (const std::string& line : lines_of(to_text(*run.groups[g].plan, *run.groups[g].scene)))
-      if (std::ranges::find(known, line) == known.end()) out += line + "\n";
+      if (std::ranges::find(known, line) == known.end() && !line.ends_with(" ms per exposure")) out += line + "\n";
   }
   return out;
 }

@@ -45,6 +45,21 @@ void find_common_targets(PreparedRun& run) {
                                     seen.size() - common.size(), seen.size()));
 }
 
+/// Notes of the scenes, once where all have them.
+void collect_notes(PreparedRun& run) {
+  const auto all_have = [&](const std::string& note) {
+    return std::ranges::all_of(run.groups, [&](const PreparedGroup& group) {
+      return std::ranges::find(group.scene->notes(), note) != group.scene->notes().end();
+    });
+  };
+  for (std::size_t g = 0; g < run.groups.size(); ++g)
+    for (const std::string& note : run.groups[g].scene->notes()) {
+      const bool is_common = all_have(note);
+      if (is_common && g == 0) run.notes.push_back(note);
+      if (!is_common) run.notes.push_back(fmt::format("group {}: {}", g + 1, note));
+    }
+}
+
 }  // namespace
 
 PreparedRun prepare_run(const Mission& mission) {
@@ -65,9 +80,7 @@ PreparedRun prepare_run(const Mission& mission) {
   for (PreparedGroup& group : run.groups)
     if (group.plan->knobs.attitude_steps < steps)
       group.plan = std::make_shared<const Plan>(make_plan(*group.scene, costs, steps));
-  for (std::size_t g = 0; g < run.groups.size(); ++g)
-    for (const std::string& note : run.groups[g].scene->notes())
-      run.notes.push_back(count > 1 ? fmt::format("group {}: {}", g + 1, note) : note);
+  collect_notes(run);
   find_common_targets(run);
   return run;
 }

@@ -156,7 +156,7 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
     const StarEstimator estimator = mean_estimator(views);
     const PredictedNoise noise =
         predict_mean_noise(estimator, mean_motion_noise(views, attitude.of_target(t), setup), setup);
-    TargetMetrics target = predict_target(mean_truth(stars, shares), estimator, noise, setup);
+    TargetMetrics target = predict_mean_target(mean_truth(stars, shares), estimator, noise, setup);
     add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
     targets.push_back(std::move(target));
   }

@@ -126,8 +126,8 @@ struct TargetMetrics {
 TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estimator, const StarMotion& motion,
                              const RunSetup& setup);
 /// The same of the mean of groups: of mean_truth(), mean_estimator() and predict_mean_noise().
-TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estimator, const PredictedNoise& noise,
-                             const RunSetup& setup);
+TargetMetrics predict_mean_target(const TruthStar& truth, const StarEstimator& estimator, const PredictedNoise& noise,
+                                  const RunSetup& setup);
 
 /// Adds what was measured.
 /// @param reference  e- per exposure, the flux that the series is relative to.
