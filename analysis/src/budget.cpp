@@ -63,9 +63,10 @@ std::vector<BudgetRow> analytic_budget(const Mission& mission, const PixelPsf& p
     row.mag = magnitude;
     std::vector<StarEstimator> estimators;
     for (const Mission& camera : seen) {
-      const double electrons = mean_throughput(camera) * (electron_rate(Magnitude(magnitude), mission.telescope.zero_point) *
-                                                          mission.simulation.exposure_time)
-                                                             .value();
+      const double electrons =
+          mean_throughput(camera) *
+          (electron_rate(Magnitude(magnitude), mission.telescope.zero_point) * mission.simulation.exposure_time)
+              .value();
       const double background = expected_pixel_noise(camera).background;
       row.electrons += share(camera) * electrons;
       row.peak_electrons = std::max(row.peak_electrons, electrons * peak);

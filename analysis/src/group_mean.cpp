@@ -101,8 +101,7 @@ MotionNoise mean_motion_noise(std::span<const GroupView> groups, std::span<const
   ASTROID_CHECK_EQ(motions.size(), count * count);
   const auto own = [&](std::size_t g) {
     const CrossMotion& m = motions[g * count + g];
-    return StarMotion{.exposure = {m.exposure.xx, m.exposure.xy, m.exposure.yy},
-                      .bin = {m.bin.xx, m.bin.xy, m.bin.yy}};
+    return StarMotion{.exposure = {m.exposure.xx, m.exposure.xy, m.exposure.yy}, .bin = {m.bin.xx, m.bin.xy, m.bin.yy}};
   };
   if (count == 1) return motion_noise(*groups.front().estimator, own(0), setup);
   const double pure = mean(groups, purity);

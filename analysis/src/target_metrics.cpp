@@ -103,8 +103,7 @@ PredictedNoise predict_mean_noise(const StarEstimator& estimator, const MotionNo
   const double independent = budget.variance() / square(budget.target);
   out.exposure = std::sqrt(independent + motion.jitter_camera + motion.prnu_exposure + drift);
   out.bin_common = std::hypot(out.bin.jitter, out.bin.drift);
-  out.bin_simulated =
-      kPpm * std::sqrt((independent / n + motion.prnu_bin) / simulated + motion.jitter_bin + drift);
+  out.bin_simulated = kPpm * std::sqrt((independent / n + motion.prnu_bin) / simulated + motion.jitter_bin + drift);
   // Within a bin the variance is what the mean of the bin has not taken; n / (n - 1) as the estimator divides by n - 1.
   const double bessel = n > 1.0 ? n / (n - 1.0) : 1.0;
   const double shared = bessel * std::max(0.0, motion.jitter_exposure - motion.jitter_bin);

@@ -60,8 +60,7 @@ Mission group_mission(const Mission& mission, int group) {
   seen.telescope.group = group;
   seen.simulation.stagger = Seconds(of_group(groups.stagger, group, 0.0));
   seen.telescope.throughput.beginning_of_life *= of_group(groups.throughput, group, 1.0);
-  seen.telescope.throughput.end_of_life =
-      of_group(groups.end_of_life, group, mission.telescope.throughput.end_of_life);
+  seen.telescope.throughput.end_of_life = of_group(groups.end_of_life, group, mission.telescope.throughput.end_of_life);
   seen.ccd.axis_x += of_group(groups.offset_x, group, 0.0);
   seen.ccd.axis_y += of_group(groups.offset_y, group, 0.0);
   return seen;

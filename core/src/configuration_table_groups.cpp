@@ -33,8 +33,9 @@ std::vector<Parameter> group_parameters() {
        .kind = Kind::kRealList,
        .unit = "deg",
        .range = from_to(-360, 360),
-       .meaning = "Rotation of each group's detector about its own optical axis, in the sense of Satellite/Pointing/Roll "
-                  "and beyond it; none: 0.",
+       .meaning =
+           "Rotation of each group's detector about its own optical axis, in the sense of Satellite/Pointing/Roll "
+           "and beyond it; none: 0.",
        .example = "0 0 0 0",
        .assign = [](Mission& m, const Value& v) { m.telescope.groups.roll = v.reals; }},
       {.path = "Telescope/Groups/Stagger",
@@ -49,8 +50,9 @@ std::vector<Parameter> group_parameters() {
        .kind = Kind::kRealList,
        .unit = "px",
        .range = from_to(-1e7, 1e7),
-       .meaning = "What each group adds to the column CCD/OpticalAxis/X where its axis falls: its detector, and its pixel "
-                  "phase; none: 0.",
+       .meaning =
+           "What each group adds to the column CCD/OpticalAxis/X where its axis falls: its detector, and its pixel "
+           "phase; none: 0.",
        .example = "0.1 0.35 0.6 0.85",
        .assign = [](Mission& m, const Value& v) { m.telescope.groups.offset_x = v.reals; }},
       {.path = "Telescope/Groups/OffsetY",

@@ -165,7 +165,7 @@ struct SkyProjection::State {
   double reach = 0.0;  // deg
   PixelScale scale{};
   std::string code{};
-  CameraAxes frame{};  // about which attitudes turn
+  CameraAxes frame{};                         // about which attitudes turn
   std::optional<SipFit> header_distortion{};  // nothing: none, or none that is good enough
 
   State(WcsPointer wcs, std::optional<CameraPointing> p) : engine(std::move(wcs)), pointing(std::move(p)) {

@@ -183,8 +183,8 @@ LightCurve LightCurveReader::read(std::size_t star, int camera) const {
 
   LightCurve curve;
   const bool of_group = camera > 0 && !groups.empty();
-  curve.star =
-      of_group ? groups[static_cast<std::size_t>(header.group[static_cast<std::size_t>(camera) - 1])][star] : stars[star];
+  curve.star = of_group ? groups[static_cast<std::size_t>(header.group[static_cast<std::size_t>(camera) - 1])][star]
+                        : stars[star];
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(header.exposures, 0));
   std::vector<float> deviation(count);
   if (count > 0) reader.read_pixels(unit, static_cast<std::int64_t>(star) * header.exposures, deviation);

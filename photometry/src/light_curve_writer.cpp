@@ -98,8 +98,9 @@ struct LightCurveWriter::Impl {
 
   [[nodiscard]] std::vector<FitsCard> camera_cards(int camera) const {
     if (groups.empty()) return {};
-    return {{"GROUP", header.group.at(static_cast<std::size_t>(camera) - 1) + 1, "of this camera: stars in STARSn"},
-            {"STAGGER", header.stagger.at(static_cast<std::size_t>(camera) - 1), "[s] from a cycle's start; TIME: mean"}};
+    return {
+        {"GROUP", header.group.at(static_cast<std::size_t>(camera) - 1) + 1, "of this camera: stars in STARSn"},
+        {"STAGGER", header.stagger.at(static_cast<std::size_t>(camera) - 1), "[s] from a cycle's start; TIME: mean"}};
   }
 
   void write_stars(std::span<const LightCurveStar> s, const std::string& name) {

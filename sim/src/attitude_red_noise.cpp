@@ -114,10 +114,8 @@ class RedNoiseAttitude final : public AttitudeModel {
       for (int i = 0; i < steps; ++i) {
         const double offset = staggers_[s] + (i + 0.5) * step;
         const double cycles = std::floor(offset / cycle_);
-        instants.push_back({.place = offset - cycles * cycle_,
-                            .stagger = s,
-                            .step = i,
-                            .earlier = static_cast<std::int64_t>(cycles)});
+        instants.push_back(
+            {.place = offset - cycles * cycle_, .stagger = s, .step = i, .earlier = static_cast<std::int64_t>(cycles)});
       }
     std::ranges::stable_sort(instants, {}, &Instant::place);
     const Transition within = transition(step, timescale_);

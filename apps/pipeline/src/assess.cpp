@@ -58,9 +58,8 @@ AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions
                 .message = "there is no target to assess"});
   const GroundSegment ground = perfect_ground_segment(run);
   write_inputs(working, configuration, run);
-  const StreamResult stream =
-      stream_exposures(stream_groups(run, ground),
-                       {.threads = options.threads, .folder = working, .progress = options.progress});
+  const StreamResult stream = stream_exposures(
+      stream_groups(run, ground), {.threads = options.threads, .folder = working, .progress = options.progress});
   const Clock::time_point analysis_begin = Clock::now();
   // The largest product by far is complete: its checksum is computed while the report is made.
   const std::filesystem::path light_curves = working / kLightCurves;
@@ -98,8 +97,8 @@ StreamResult simulate(const ResolvedConfiguration& configuration, const RunOptio
   const std::filesystem::path working = partial_path(folder.path());
   const PreparedRun run = prepare_run(configuration.mission);
   write_inputs(working, configuration, run);
-  StreamResult stream = stream_exposures(
-      stream_groups(run, {}), {.threads = options.threads, .folder = working, .progress = options.progress});
+  StreamResult stream = stream_exposures(stream_groups(run, {}),
+                                         {.threads = options.threads, .folder = working, .progress = options.progress});
   write_run_record(folder, {.command_line = options.command_line,
                             .threads = options.threads,
                             .run = &run,

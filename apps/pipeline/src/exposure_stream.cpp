@@ -242,8 +242,8 @@ StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamO
   std::vector<std::vector<std::uint32_t>> own_flags;
   for (const std::size_t group : group_of) own_flags.push_back(inputs[group].own_flags);
   SeriesStage series(std::move(own_flags), per_bin, static_cast<std::size_t>(length), light_curves.get());
-  Stream stream({.simulators = simulators, .group_of = group_of, .groups = inputs, .progress = options.progress}, series,
-                threads, length, batch);
+  Stream stream({.simulators = simulators, .group_of = group_of, .groups = inputs, .progress = options.progress},
+                series, threads, length, batch);
   result.timings.prepare = seconds_since(begin);
 
   for (std::int64_t first = 0; first < exposures; first += length)

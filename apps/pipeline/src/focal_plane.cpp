@@ -111,8 +111,7 @@ FocalPlaneResult map_focal_plane(const ResolvedConfiguration& configuration, con
                 {.threads = options.threads, .folder = {}, .progress = [&](std::int64_t done, std::int64_t of) {
                    if (options.progress) options.progress(i * of + done, all * of);
                  }});
-    result.sub_fields.push_back(
-        sub_field_metrics(area, targets, result.reference_magnitude, run_setup(camera)));
+    result.sub_fields.push_back(sub_field_metrics(area, targets, result.reference_magnitude, run_setup(camera)));
     if (result.sub_fields.back().clean == 0)
       result.warnings.push_back(
           fmt::format("the sub-field at column {}, row {} has no clean target near magnitude {:.2f}", area.x0, area.y0,

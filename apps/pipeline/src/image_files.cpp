@@ -28,10 +28,10 @@ std::string file_name(int camera, std::int64_t exposure) {
 /// Cards that every image of an exposure carries.
 std::vector<FitsCard> exposure_cards(const Scene& scene, int camera, std::int64_t exposure) {
   const Mission& mission = scene.mission();
-  const double start = mission.simulation.start_mjd +
-                       (mission.simulation.stagger.value() +
-                        static_cast<double>(exposure) * mission.simulation.cycle.value()) /
-                           kSecondsPerDay;
+  const double start =
+      mission.simulation.start_mjd +
+      (mission.simulation.stagger.value() + static_cast<double>(exposure) * mission.simulation.cycle.value()) /
+          kSecondsPerDay;
   constexpr int kMilliseconds = 3;
   return {{"TELESCOP", "ASTROID", "simulated"},
           {"SIMULATE", true, "not flight data"},

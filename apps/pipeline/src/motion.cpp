@@ -41,8 +41,7 @@ AttitudeSharing::AttitudeSharing(const PreparedRun& run) : run_(run) {
       const AttitudeModel& attitude = a.scene->attitude();
       const Seconds lag = b.scene->mission().simulation.stagger - a.scene->mission().simulation.stagger;
       exposure_.push_back(attitude.covariance_of_mean(1, lag));
-      bin_.push_back(
-          attitude.covariance_of_mean(static_cast<std::int64_t>(a.scene->summary().exposures_per_bin), lag));
+      bin_.push_back(attitude.covariance_of_mean(static_cast<std::int64_t>(a.scene->summary().exposures_per_bin), lag));
     }
 }
 
@@ -53,8 +52,8 @@ std::vector<CrossMotion> AttitudeSharing::of_target(std::size_t target) const {
       const AttitudeJacobian& in_a = a.scene->stars()[a.targets[target]].motion;
       const AttitudeJacobian& in_b = b.scene->stars()[b.targets[target]].motion;
       const std::size_t pair = motions.size();
-      motions.push_back({.exposure = cross_covariance(in_a, in_b, exposure_[pair]),
-                         .bin = cross_covariance(in_a, in_b, bin_[pair])});
+      motions.push_back(
+          {.exposure = cross_covariance(in_a, in_b, exposure_[pair]), .bin = cross_covariance(in_a, in_b, bin_[pair])});
     }
   return motions;
 }

@@ -32,8 +32,8 @@ std::string table_of_groups(const PreparedRun& run) {
     const Scene& scene = *run.groups[g].scene;
     const Mission& mission = scene.mission();
     const Boresight camera = camera_boresight(mission);
-    out += fmt::format("  {:>5}  {:>7} {:>10.4f} {:>10.4f} {:>10.4f} {:>8.3f} {:>15.3f} {:>10.3f} {:>11.5f} {:>8}\n", g + 1,
-                       telescope.groups.cameras[g], camera.axis.ra, camera.axis.dec, camera.roll.value(),
+    out += fmt::format("  {:>5}  {:>7} {:>10.4f} {:>10.4f} {:>10.4f} {:>8.3f} {:>15.3f} {:>10.3f} {:>11.5f} {:>8}\n",
+                       g + 1, telescope.groups.cameras[g], camera.axis.ra, camera.axis.dec, camera.roll.value(),
                        mission.simulation.stagger.value(), mission.ccd.axis_x, mission.ccd.axis_y,
                        mean_throughput(mission), scene.targets().size());
   }

@@ -173,8 +173,8 @@ GroundSegment perfect_ground_segment(const PreparedRun& run) {
   GroundSegment segment;
   for (const PreparedGroup& group : run.groups) {
     segment.grounds.push_back(perfect_ground(*group.scene, group.targets));
-    segment.estimators.push_back(build_estimators(*group.scene->layout(), segment.grounds.back().model,
-                                                  group.scene->mission().photometry));
+    segment.estimators.push_back(
+        build_estimators(*group.scene->layout(), segment.grounds.back().model, group.scene->mission().photometry));
   }
   return segment;
 }
@@ -206,8 +206,7 @@ Ground perfect_ground(const Scene& scene, std::span<const std::size_t> targets) 
   ground.model.faintest_electrons = all.empty() ? 0.0 : faintest_of(scene, all);
   ground.model.contamination_limit = scene.mission().analysis.uncontaminated_spr;
   const RunSetup setup = run_setup(scene.mission());
-  ground.model.motion =
-      motion_like_pixel_noise(mean_bin_motion(scene, all), setup.exposures_per_bin, setup.cameras);
+  ground.model.motion = motion_like_pixel_noise(mean_bin_motion(scene, all), setup.exposures_per_bin, setup.cameras);
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
   believe_readout(scene, ground.model);

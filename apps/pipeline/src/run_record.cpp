@@ -15,8 +15,8 @@
 #include <span>
 #include <thread>
 
-#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/atomic_file.hpp"
+#include "astroid/core/camera_groups.hpp"
 #include "host.hpp"
 
 namespace astroid {

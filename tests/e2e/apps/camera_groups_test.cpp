@@ -27,9 +27,12 @@ test::ProgramResult run(const test::TemporaryFolder& folder, const std::string& 
   return test::run_astroid(arguments, folder.path());
 }
 
-const Settings kTwoGroups{"Telescope/Groups/Cameras=12 12",    "Telescope/SimulatedCameras=2",
-                          "Telescope/Groups/Roll=0 90",        "Telescope/Groups/Stagger=0 12.5",
-                          "Telescope/Groups/OffsetX=0 0.4",    "Telescope/Groups/Throughput=1 0.8",
+const Settings kTwoGroups{"Telescope/Groups/Cameras=12 12",
+                          "Telescope/SimulatedCameras=2",
+                          "Telescope/Groups/Roll=0 90",
+                          "Telescope/Groups/Stagger=0 12.5",
+                          "Telescope/Groups/OffsetX=0 0.4",
+                          "Telescope/Groups/Throughput=1 0.8",
                           "Output/Images=all"};
 
 TEST(CameraGroups, ThePresetOfAllCamerasMeasuresTheNoiseThatIsPredicted) {
@@ -115,8 +118,8 @@ TEST(CameraGroups, AreSimulatedAndMappedOneByOne) {
   test::write_small_mission(folder);
   EXPECT_EQ(run(folder, "simulate", "images", kTwoGroups).exit_code, 0);
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "images/images/camera2_000005.fits"));
-  std::vector<std::string> arguments{"focal-plane", "small.xml", "-o", "map", "--across", "1", "--down", "1",
-                                     "--side", "100", "--group", "2"};
+  std::vector<std::string> arguments{"focal-plane", "small.xml", "-o",     "map", "--across", "1",
+                                     "--down",      "1",         "--side", "100", "--group",  "2"};
   for (const std::string& setting : kTwoGroups) arguments.insert(arguments.end(), {"--set", setting});
   const test::ProgramResult map = test::run_astroid(arguments, folder.path());
   EXPECT_EQ(map.exit_code, 0) << map.err;

@@ -1,5 +1,7 @@
 // The mean light curve of cameras of different groups has the noise that is predicted: what is common stays, what each
 // has of its own averages out.
+#include "astroid/core/camera_groups.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -8,7 +10,6 @@
 #include <vector>
 
 #include "astroid/analysis/group_mean.hpp"
-#include "astroid/core/camera_groups.hpp"
 #include "astroid/pipeline/exposure_stream.hpp"
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
@@ -83,7 +84,8 @@ TEST(CameraGroups, HaveTheNoiseInTheirMeanThatIsPredicted) {
   const Mission mission = mission_of_two(kExposures);
   const PreparedRun run = prepare(mission, stars_of_grid(mission));
   const GroundSegment ground = perfect_ground_segment(run);
-  const StreamResult result = stream_exposures(stream_groups(run, ground), {.threads = 0, .folder = {}, .progress = {}});
+  const StreamResult result =
+      stream_exposures(stream_groups(run, ground), {.threads = 0, .folder = {}, .progress = {}});
   ASSERT_EQ(result.series.size(), static_cast<std::size_t>(kStars));
   const RunSetup setup = run_setup(mission);
   const AttitudeSharing attitude(run);
@@ -108,9 +110,10 @@ TEST(CameraGroups, HaveTheNoiseInTheirMeanThatIsPredicted) {
                              .jitter_bin;
     if_alike += 1e12 * alone / kStars;
   }
-  std::printf("noise of a bin of six cameras: measured %.2f ppm, predicted %.2f ppm, of that common %.2f ppm; jitter of "
-              "the first group alone %.2f ppm\n",
-              std::sqrt(measured), std::sqrt(predicted), std::sqrt(common), std::sqrt(if_alike));
+  std::printf(
+      "noise of a bin of six cameras: measured %.2f ppm, predicted %.2f ppm, of that common %.2f ppm; jitter of "
+      "the first group alone %.2f ppm\n",
+      std::sqrt(measured), std::sqrt(predicted), std::sqrt(common), std::sqrt(if_alike));
   // 400 bins of two angles that all stars share, and each star's own photons.
   const double error = std::sqrt(2.0 / 400.0 / 2.0) * common + std::sqrt(2.0 / 400.0 / kStars) * (predicted - common);
   EXPECT_NEAR(measured, predicted, 3.5 * error);

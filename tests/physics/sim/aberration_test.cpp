@@ -139,7 +139,8 @@ TEST(Aberration, IsLinearInTheVelocityAndZeroBehindTheCamera) {
   const CameraPointing pointing{.axis = {10.0, 80.0}, .scale = PixelScale(15.0)};
   const SkyProjection camera(pointing);
   const SkyPosition star{30.0, 75.0};
-  const AberrationJacobian j = aberration_jacobian(star, {pointing.axis, pointing.roll}, *camera.attitude_jacobian(star));
+  const AberrationJacobian j =
+      aberration_jacobian(star, {pointing.axis, pointing.roll}, *camera.attitude_jacobian(star));
   const PixelShift one = j.displacement({1e-5, -2e-5, 3e-5});
   const PixelShift two = j.displacement({2e-5, -4e-5, 6e-5});
   EXPECT_DOUBLE_EQ(two.dx, 2.0 * one.dx);

@@ -1,11 +1,12 @@
 // What cameras of different groups see: stars where a tilted camera has them, moved by the attitude that all share.
+#include "astroid/core/camera_groups.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 #include <numeric>
 
-#include "astroid/core/camera_groups.hpp"
 #include "astroid/sim/optics.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "astroid/test/scenes.hpp"

@@ -1,4 +1,5 @@
-// The mean over groups of cameras that see a star differently: one estimator, truth and noise for their mean light curve.
+// The mean over groups of cameras that see a star differently: one estimator, truth and noise for their mean light
+// curve.
 //
 // Every camera's relative deviation from its own reference counts the same, so a group counts by its share of the
 // cameras. What cameras have of their own averages within and between groups; the attitude is common to all, though

@@ -8,9 +8,9 @@
 // CADENCENO, EXPOSURES, FLAGS, where flags are set that STARS does not have, in so
 //              many exposures in a row from CADENCENO on
 //
-// Where groups of cameras see the stars differently, STARS is of their mean and tables STARS1 … before FLAGS are of each
-// group. The cards GROUP and STAGGER of a camera's image say which is its own, and how long after the start of a cycle
-// its exposures begin; TIME is the mean of all cameras.
+// Where groups of cameras see the stars differently, STARS is of their mean and tables STARS1 … before FLAGS are of
+// each group. The cards GROUP and STAGGER of a camera's image say which is its own, and how long after the start of a
+// cycle its exposures begin; TIME is the mean of all cameras.
 #pragma once
 
 #include <cstddef>

@@ -80,7 +80,8 @@ Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoc
 
 /// Decides everything from the scene and the accuracy asked for.
 /// @param costs                 of this machine, for the predicted times.
-/// @param least_attitude_steps  in an exposure. Cameras that share a random path of the attitude must all have the same.
+/// @param least_attitude_steps  in an exposure. Cameras that share a random path of the attitude must all have the
+/// same.
 Plan make_plan(const Scene& scene, const CostFactors& costs = {}, int least_attitude_steps = 1);
 
 /// What of CostFactors an effect's time belongs to: its name, or how the plan makes the noiseless image.

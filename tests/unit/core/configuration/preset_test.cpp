@@ -166,7 +166,9 @@ TEST_P(Preset, NamesTheLineOfEveryParameterItGives) {
   EXPECT_GE(from_file, 40);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shipped, Preset, testing::Values(plato_preset(), test::week_preset(), test::groups_preset(), test::cmos_preset()));
+INSTANTIATE_TEST_SUITE_P(Shipped, Preset,
+                         testing::Values(plato_preset(), test::week_preset(), test::groups_preset(),
+                                         test::cmos_preset()));
 
 }  // namespace
 }  // namespace astroid

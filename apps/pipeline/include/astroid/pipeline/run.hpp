@@ -44,8 +44,8 @@ struct PreparedRun {
 /// Reads the catalogue, builds the scenes and plans them. @throws InputError, EnvironmentError
 PreparedRun prepare_run(const Mission& mission);
 
-/// The plan of a run as plan.txt and plan.json have it: of several groups of cameras what each of them sees, the plan of
-/// the first, and what is otherwise in the others.
+/// The plan of a run as plan.txt and plan.json have it: of several groups of cameras what each of them sees, the plan
+/// of the first, and what is otherwise in the others.
 std::string plan_text(const PreparedRun& run);
 std::string plan_json(const PreparedRun& run);
 

@@ -49,8 +49,8 @@ struct GhostSettings {
   friend bool operator==(const GhostSettings&, const GhostSettings&) = default;
 };
 
-/// Cameras that look, read out or have aged otherwise than others. Every list but the first is empty, or says one number
-/// of each group.
+/// Cameras that look, read out or have aged otherwise than others. Every list but the first is empty, or says one
+/// number of each group.
 struct CameraGroups {
   std::vector<int> cameras;         ///< of each group; empty: all cameras are alike
   std::vector<double> tilt;         ///< deg, from the spacecraft's pointing to the group's axis
