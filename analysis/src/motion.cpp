@@ -20,9 +20,11 @@ struct Displacement {
 /// Of a star so far from the axis of a mission's camera, px: by the rms of yaw, pitch and roll.
 std::array<Displacement, 3> rms_displacements(const Mission& mission, double offset_x, double offset_y) {
   const JitterSettings& jitter = mission.satellite.jitter;
-  const CameraAxes craft = camera_axes(spacecraft_boresight(mission));
-  const CameraAxes camera = camera_axes(camera_boresight(mission));
-  const bool is_tilted = mission.telescope.group >= 0;
+  const Boresight from = spacecraft_boresight(mission);
+  const Boresight to = camera_boresight(mission);
+  const bool is_turned = to.axis.ra != from.axis.ra || to.axis.dec != from.axis.dec || to.roll != from.roll;
+  const CameraAxes craft = camera_axes(from);
+  const CameraAxes camera = camera_axes(to);
   // A turn from u to v, seen as turns of the camera: from its axis to x, from its axis to y, and from x to y.
   const auto turned = [&](const Direction& u, const Direction& v, Arcseconds rms) {
     const auto part = [&](const Direction& from, const Direction& to) {
@@ -33,7 +35,7 @@ std::array<Displacement, 3> rms_displacements(const Mission& mission, double off
     return Displacement{px * part(camera.axis, camera.x) - roll * offset_y,
                         px * part(camera.axis, camera.y) + roll * offset_x};
   };
-  if (is_tilted)
+  if (is_turned)
     return {turned(craft.axis, craft.x, jitter.yaw), turned(craft.axis, craft.y, jitter.pitch),
             turned(craft.x, craft.y, jitter.roll)};
   const double roll = to_radians(jitter.roll).value();

@@ -63,7 +63,10 @@ void collect_notes(PreparedRun& run) {
 }  // namespace
 
 PreparedRun prepare_run(const Mission& mission) {
-  const StarCatalogue catalogue = load_field(mission);
+  return prepare_run(mission, load_field(mission));
+}
+
+PreparedRun prepare_run(const Mission& mission, const StarCatalogue& catalogue) {
   const CostFactors costs = read_costs(costs_file());
   const bool has_groups = mission.telescope.group < 0 && !mission.telescope.groups.cameras.empty();
   const int count = has_groups ? group_count(mission.telescope) : 1;

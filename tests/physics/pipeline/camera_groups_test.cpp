@@ -1,12 +1,11 @@
 // The mean light curve of cameras of different groups has the noise that is predicted: what is common stays, what each
 // has of its own averages out.
-#include "astroid/core/camera_groups.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdio>
-#include <memory>
+#include <string>
 #include <vector>
 
 #include "astroid/analysis/group_mean.hpp"
@@ -65,24 +64,10 @@ StarCatalogue stars_of_grid(const Mission& mission) {
   return catalogue;
 }
 
-PreparedRun prepare(const Mission& mission, const StarCatalogue& catalogue) {
-  PreparedRun run;
-  for (int g = 0; g < group_count(mission.telescope); ++g) {
-    PreparedGroup group;
-    group.scene = std::make_shared<const Scene>(group_mission(mission, g), catalogue);
-    constexpr int kSteps = 12;
-    group.plan = std::make_shared<const Plan>(make_plan(*group.scene, {}, kSteps));
-    group.targets.assign(group.scene->targets().begin(), group.scene->targets().end());
-    group.share = group_share(mission.telescope, g);
-    run.groups.push_back(std::move(group));
-  }
-  return run;
-}
-
 TEST(CameraGroups, HaveTheNoiseInTheirMeanThatIsPredicted) {
   constexpr int kExposures = 8 * 400;
   const Mission mission = mission_of_two(kExposures);
-  const PreparedRun run = prepare(mission, stars_of_grid(mission));
+  const PreparedRun run = prepare_run(mission, stars_of_grid(mission));
   const GroundSegment ground = perfect_ground_segment(run);
   const StreamResult result =
       stream_exposures(stream_groups(run, ground), {.threads = 0, .folder = {}, .progress = {}});
@@ -123,9 +108,18 @@ TEST(CameraGroups, HaveTheNoiseInTheirMeanThatIsPredicted) {
   EXPECT_LT(common, 0.9 * if_alike);
 }
 
+TEST(CameraGroups, AskForTheAttitudeAtTheSameInstants) {
+  // The fainter group alone would do with fewer steps: then the two would see two paths.
+  const Mission mission = mission_of_two(8);
+  const PreparedRun run = prepare_run(mission, stars_of_grid(mission));
+  const int own = make_plan(*run.groups[1].scene).knobs.attitude_steps;
+  EXPECT_LT(own, make_plan(*run.groups[0].scene).knobs.attitude_steps);
+  EXPECT_EQ(run.groups[0].plan->knobs.attitude_steps, run.groups[1].plan->knobs.attitude_steps);
+}
+
 TEST(CameraGroups, HaveTheSameFluxesForAnyNumberOfThreads) {
   const Mission mission = mission_of_two(40);
-  const PreparedRun run = prepare(mission, stars_of_grid(mission));
+  const PreparedRun run = prepare_run(mission, stars_of_grid(mission));
   const GroundSegment ground = perfect_ground_segment(run);
   const auto series = [&](int threads, std::int64_t block) {
     return stream_exposures(stream_groups(run, ground),
@@ -147,7 +141,7 @@ TEST(CameraGroups, OfAllCamerasMeasureWhatAMissionWithoutGroupsMeasures) {
   with.telescope.groups.cameras = {6};
   with.telescope.groups.tilt = with.telescope.groups.stagger = {0.0};
   const auto measure = [&](const Mission& mission) {
-    const PreparedRun run = prepare(mission, stars_of_grid(mission));
+    const PreparedRun run = prepare_run(mission, stars_of_grid(mission));
     const GroundSegment ground = perfect_ground_segment(run);
     return stream_exposures(stream_groups(run, ground), {.threads = 2, .folder = {}, .progress = {}});
   };

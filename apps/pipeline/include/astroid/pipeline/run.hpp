@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "astroid/analysis/target_metrics.hpp"
+#include "astroid/catalogues/star_catalogue.hpp"
 #include "astroid/core/configuration.hpp"
 #include "astroid/core/product_folder.hpp"
 #include "astroid/pipeline/exposure_stream.hpp"
@@ -43,6 +44,8 @@ struct PreparedRun {
 };
 /// Reads the catalogue, builds the scenes and plans them. @throws InputError, EnvironmentError
 PreparedRun prepare_run(const Mission& mission);
+/// The same with stars in the zero point's passband, or in pixels and electrons.
+PreparedRun prepare_run(const Mission& mission, const StarCatalogue& catalogue);
 
 /// The plan of a run as plan.txt and plan.json have it: of several groups of cameras what each of them sees, the plan
 /// of the first, and what is otherwise in the others.
