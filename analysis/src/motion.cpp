@@ -27,8 +27,8 @@ std::array<Displacement, 3> rms_displacements(const Mission& mission, double off
   const CameraAxes camera = camera_axes(to);
   // A turn from u to v, seen as turns of the camera: from its axis to x, from its axis to y, and from x to y.
   const auto turned = [&](const Direction& u, const Direction& v, Arcseconds rms) {
-    const auto part = [&](const Direction& from, const Direction& to) {
-      return dot(u, from) * dot(v, to) - dot(v, from) * dot(u, to);
+    const auto part = [&](const Direction& a, const Direction& b) {
+      return dot(u, a) * dot(v, b) - dot(v, a) * dot(u, b);
     };
     const double px = (rms / mission.ccd.pixel_scale).value();
     const double roll = to_radians(rms).value() * part(camera.x, camera.y);
