@@ -46,7 +46,8 @@ TEST(GroupMean, HasTheVarianceOfTheMeanOfRelativeDeviations) {
     const double all = e.budget.target + e.budget.contaminants;
     return e.budget.variance() / (all * all);
   };
-  // Four cameras of the one and two of the other, each a sixth of the mean; relative to the target's share of the light.
+  // Four cameras of the one and two of the other, each a sixth of the mean; relative to the target's share of the
+  // light.
   const double variance = (4.0 * relative(bright) + 2.0 * relative(dim)) / 36.0 / setup.exposures_per_bin;
   const double share = (2.0 * (1.0 - bright.spr_total) + (1.0 - dim.spr_total)) / 3.0;
   EXPECT_NEAR(noise.bin.total(), 1e6 * std::sqrt(variance) / share, 1e-9 * noise.bin.total());
