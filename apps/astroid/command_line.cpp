@@ -107,6 +107,8 @@ int run_command_line(int argc, char** argv) {
       ->type_name("PX")
       ->check(CLI::Range(8, 100000))
       ->capture_default_str();
+  sub->add_option("--group", focal_plane_options.group, "of cameras, where the mission has several")
+      ->capture_default_str();
   sub->add_option("--magnitude", focal_plane_options.magnitude, "of the star that is mapped (default: targets' median)")
       ->type_name("MAG");
   sub->callback([&] { command = [&] { return focal_plane(focal_plane_options); }; });

@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "astroid/catalogues/passbands.hpp"
+#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/ecliptic.hpp"
 #include "astroid/core/error.hpp"
@@ -128,13 +129,18 @@ ElectronsPerSecond sky_rate(const Mission& mission, ElectronsPerSecond rate, Sky
 }
 
 Seconds middle_of_run(const SimulationSettings& simulation) {
-  return Seconds(0.5 * (static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() +
-                        simulation.exposure_time.value()));
+  return simulation.stagger + Seconds(0.5 * (static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() +
+                                             simulation.exposure_time.value()));
+}
+
+Seconds end_of_run(const SimulationSettings& simulation) {
+  return simulation.stagger + Seconds(static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() +
+                                      simulation.exposure_time.value());
 }
 
 ElectronsPerSecond mean_background_rate(const Mission& mission) {
   const bool constant = mission.field.sky == SkyModel::kConstant;
-  const SkyPosition axis{mission.satellite.ra.value(), mission.satellite.dec.value()};
+  const SkyPosition axis = camera_boresight(mission).axis;
   const ElectronsPerSecond sky = sky_rate(mission, constant ? ElectronsPerSecond(0.0) : rate_of_one_s10(mission), axis,
                                           middle_of_run(mission.simulation));
   return mean_throughput(mission) * (sky + mission.field.stray_light.level);

@@ -31,10 +31,6 @@ Frame frame_at(SkyPosition centre) {
           .north = {-dec.sine * ra.cosine, -dec.sine * ra.sine, dec.cosine}};
 }
 
-double dot(const Direction& a, const Direction& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
 /// Components towards the outward, east and north vectors of `frame` as a direction of the sky.
 Direction in_sky(const Frame& frame, const Direction& local) {
   return {local.x * frame.outward.x + local.y * frame.east.x + local.z * frame.north.x,

@@ -65,8 +65,9 @@ std::vector<Parameter> memory_parameters() {
        .kind = Kind::kRealList,
        .unit = "%",
        .range = from_to(0, 20),
-       .meaning = "Share of the charge of an exposure that each kind of trap holds at its end and releases later; unset "
-                  "or 0: none.",
+       .meaning =
+           "Share of the charge of an exposure that each kind of trap holds at its end and releases later; unset "
+           "or 0: none.",
        .example = "0.3 0.1",
        .assign =
            [](Mission& m, const Value& v) {

@@ -80,6 +80,33 @@ double ou_mean_rms(double rms, Seconds tau, const Cadence& cadence) {
   return rms * std::sqrt((averaged_variance(duration) + 2.0 * covariance * sum / n) / n);
 }
 
+double ou_mean_covariance(Seconds tau, const Cadence& cadence, Seconds lag) {
+  if (lag.value() == 0.0) {
+    const double rms = ou_mean_rms(1.0, tau, cadence);
+    return rms * rms;
+  }
+  const double duration = cadence.exposure_time / tau;
+  const auto n = static_cast<double>(cadence.exposures);
+  const double decayed = duration > 0.0 ? -det::expm1(-duration) / duration : 1.0;
+  // h(t) - 1 without cancellation.
+  const auto bend = [](double t) { return 0.5 * t * t * averaged_variance(t); };
+  const auto covariance = [&](double distance) {
+    if (distance >= duration) {
+      const double root = decayed * det::exp(-0.5 * (distance - duration));
+      return root * root;
+    }
+    return (bend(duration + distance) - 2.0 * bend(distance) + bend(duration - distance)) / (duration * duration);
+  };
+  double sum = 0.0;
+  for (long k = cadence.exposures - 1; k >= 0; --k) {  // smallest first
+    const double apart = static_cast<double>(k) * (cadence.cycle / tau);
+    const double weight = n - static_cast<double>(k);
+    sum += weight * covariance(std::fabs(apart + lag / tau));
+    if (k > 0) sum += weight * covariance(std::fabs(apart - lag / tau));
+  }
+  return sum / (n * n);
+}
+
 double flat_field_static_noise(double rms, double exponent, double share) {
   return rms * std::pow(share, std::max(0.0, 1.0 - 0.5 * exponent));
 }

@@ -21,8 +21,8 @@ double throughput_at(const Mission& mission, Seconds time) {
 
 double mean_throughput(const Mission& mission) {
   const SimulationSettings& s = mission.simulation;
-  const double middle =
-      0.5 * (static_cast<double>(s.exposures - 1) * s.cycle.value() + s.exposure_time.value());  // it is linear in time
+  const double middle =  // it is linear in time
+      s.stagger.value() + 0.5 * (static_cast<double>(s.exposures - 1) * s.cycle.value() + s.exposure_time.value());
   return throughput_at(mission, Seconds(middle));
 }
 

@@ -43,18 +43,17 @@ namespace astroid {
 namespace {
 
 // From PhotonNoise to RampReads: once for every read.
-using CmosTable =
-    EffectTable<ProperMotionEffect,                                                                    // Catalogue
-                JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, RollingShutter,
-                AberrationEffect,                                                                      // Pointing
-                Throughput, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,                    // Optics
-                Sky, ZodiacalSky, StrayLight,                                                          // Sky
-                IntraPixelResponse,                                                                    // SubPixel
-                Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,
-                Persistence,                                                                           // PixelMean
-                PhotonNoise, CosmicRays, PixelSaturation,                                              // PixelSample
-                GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise, BiasEffect,
-                PixelOffset, Adc, RampReads, RampFitEffect, BadPixelMap>;  // Readout
+using CmosTable = EffectTable<ProperMotionEffect,  // Catalogue
+                              JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, RollingShutter,
+                              AberrationEffect,                                                    // Pointing
+                              Throughput, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,  // Optics
+                              Sky, ZodiacalSky, StrayLight,                                        // Sky
+                              IntraPixelResponse,                                                  // SubPixel
+                              Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,
+                              Persistence,                               // PixelMean
+                              PhotonNoise, CosmicRays, PixelSaturation,  // PixelSample
+                              GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise,
+                              BiasEffect, PixelOffset, Adc, RampReads, RampFitEffect, BadPixelMap>;  // Readout
 
 }  // namespace
 

@@ -136,7 +136,8 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
     if (pixels > scene.detector().size()) regions = {scene.detector()};
   }
   if (std::ranges::equal(regions, exposed)) return scene.layout();
-  const std::vector<Rectangle> reference = reference_regions(regions, scene.detector(), scene.mission().ccd.reference, scene.mission().ccd.nodes.count);
+  const std::vector<Rectangle> reference =
+      reference_regions(regions, scene.detector(), scene.mission().ccd.reference, scene.mission().ccd.nodes.count);
   return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 
@@ -155,15 +156,17 @@ std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
 Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch) {
   const std::int64_t length = std::max<std::int64_t>(1, plan.epoch_exposures);
   const double middle = static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1);
-  const Seconds time = middle * scene.mission().simulation.cycle + 0.5 * scene.mission().simulation.exposure_time;
+  const SimulationSettings& simulation = scene.mission().simulation;
+  const Seconds time = simulation.stagger + (middle * simulation.cycle + 0.5 * simulation.exposure_time);
   Conditions conditions;
   for (const PlannedEffect& planned : plan.effects)
     if (planned.need.needed) planned.effect->set_conditions(scene, time, conditions);
   return conditions;
 }
 
-Plan make_plan(const Scene& scene, const CostFactors& costs) {
+Plan make_plan(const Scene& scene, const CostFactors& costs, int least_attitude_steps) {
   Plan plan;
+  plan.knobs.attitude_steps = least_attitude_steps;
   const SceneSummary& summary = scene.summary();
   bool moves = false;
   for (const auto& effect : effect_table(scene.mission().simulation.type)) {

@@ -60,10 +60,11 @@ void plan_memory(const Scene& scene, Plan& plan) {
   while (block > 1 && !is_small(error())) block /= 2;
   while (kernel.reach() / block > kMostImages) block *= 2;
   if (block == 1) return;
-  plan.approximations.push_back(fmt::format(
-      "what is released of the charge of earlier exposures is that of one in {}: motion and light that varies meanwhile "
-      "make this wrong by up to {:.2g} e- of a target's flux, and {:.2g} ppm rms",
-      block, error().bias, 1e6 * error().rms));
+  plan.approximations.push_back(
+      fmt::format("what is released of the charge of earlier exposures is that of one in {}: motion and light that "
+                  "varies meanwhile "
+                  "make this wrong by up to {:.2g} e- of a target's flux, and {:.2g} ppm rms",
+                  block, error().bias, 1e6 * error().rms));
 }
 
 std::int64_t kept_images(const Plan& plan, const Scene& scene) {
@@ -78,7 +79,8 @@ void plan_bands(const Scene& scene, Plan& plan) {
   plan.knobs.band_rows = plan_band_rows(scene.summary());
   const RowTiming left(scene.summary(), 0.5 * plan.knobs.band_rows * scene.mission().cmos.line_time);
   plan.approximations.push_back(fmt::format(
-      "{} rows are exposed at the time of their middle row, {} bands in all: this changes fluxes by up to {:.2g} ppm rms "
+      "{} rows are exposed at the time of their middle row, {} bands in all: this changes fluxes by up to {:.2g} ppm "
+      "rms "
       "and {:.2g} e-",
       plan.knobs.band_rows, (ccd.rows + plan.knobs.band_rows - 1) / plan.knobs.band_rows, 1e6 * left.rms, left.bias));
 }

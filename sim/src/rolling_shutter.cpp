@@ -25,7 +25,8 @@ int plan_band_rows(const SceneSummary& scene) {
   while (rows > fewest) {
     // The first and last row of a band are half of it away from its middle.
     const RowTiming timing(scene, 0.5 * static_cast<double>(rows) * line);
-    if (timing.variance_ratio <= kShare * kVarianceTolerance && timing.bias <= kShare * scene.tightest_tolerance()) break;
+    if (timing.variance_ratio <= kShare * kVarianceTolerance && timing.bias <= kShare * scene.tightest_tolerance())
+      break;
     rows = std::max(fewest, (rows + 1) / 2);
   }
   return rows;

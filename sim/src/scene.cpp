@@ -48,7 +48,7 @@ std::shared_ptr<const AttitudeModel> make_jitter(const Mission& mission) {
     case JitterModel::kNone:
       return make_still_attitude();
     case JitterModel::kRedNoise:
-      return make_red_noise_attitude(jitter, mission.simulation, stream);
+      return make_red_noise_attitude(jitter, mission.simulation, stream, mission.telescope.groups.stagger);
     case JitterModel::kFile:
       return make_file_attitude(jitter.file, mission.simulation);
     case JitterModel::kSpectrum:
@@ -158,6 +158,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
       optical_psf_(make_psf(mission)),
       psf_(make_recorded_psf(mission, optical_psf_)),
       jitter_(make_jitter(mission)) {
+  // What a camera sees is that of its group (group_mission()).
+  ASTROID_CHECK_LE(mission_.telescope.groups.cameras.empty() ? -1 : 0, mission_.telescope.group);
   const CcdSettings& ccd = mission_.ccd;
   const SatelliteSettings& satellite = mission_.satellite;
   drift_ = thermo_elastic_drift(satellite, mission_.simulation, attitude_stream(mission_, DriftEffect::kSpec.id));
@@ -226,7 +228,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     s.response = passed * vignetting_at(mission_.telescope.vignetting, *projection_, s.position);
     s.electrons *= s.response;
     s.motion = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
-    if (satellite.aberration) s.aberration = aberration_jacobian(direction, pointing.axis, pointing, s.motion);
+    if (satellite.aberration) s.aberration = aberration_jacobian(direction, *pointing.spacecraft, s.motion);
     stars_.push_back(std::move(s));
   }
   read_variable_stars(catalogue);
@@ -335,8 +337,8 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
 
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {
   if (mission_.field.variables.empty()) return;
-  variables_ = read_variables(mission_.field.variables,
-                              (quarter_start(mission_) + 2.0 * middle_of_run(mission_.simulation)).value());
+  variables_ =
+      read_variables(mission_.field.variables, (quarter_start(mission_) + end_of_run(mission_.simulation)).value());
   std::unordered_map<std::string, int> number;
   for (std::size_t i = 0; i < variables_.size(); ++i) number[variables_[i].id] = static_cast<int>(i);
   std::unordered_set<std::string> known;
@@ -377,7 +379,7 @@ void Scene::find_sky() {
   // The whole run must be far enough from the Sun, which moves by 5 deg in this time and comes again after a year.
   constexpr double kStep = 5.0 * 86400.0;
   constexpr double kYear = 366.0 * 86400.0;
-  const double end = std::min(2.0 * middle_of_run(mission_.simulation).value(), kYear);
+  const double end = std::min(end_of_run(mission_.simulation).value(), kYear);
   for (double time = 0.0; time < end + kStep; time += kStep)
     for (std::size_t i = 0; i < corners_.size(); ++i) (void)sky_at_corner(i, Seconds(std::min(time, end)));
 }
@@ -427,8 +429,8 @@ std::int64_t Scene::mission_number(std::int64_t exposure) const {
 
 Seconds Scene::mid_time(std::int64_t exposure) const {
   // From the integer exposure number, so that no error accumulates over years.
-  return Seconds(static_cast<double>(exposure) * mission_.simulation.cycle.value() +
-                 0.5 * mission_.simulation.exposure_time.value());
+  return mission_.simulation.stagger + Seconds(static_cast<double>(exposure) * mission_.simulation.cycle.value() +
+                                               0.5 * mission_.simulation.exposure_time.value());
 }
 
 }  // namespace astroid

@@ -165,8 +165,7 @@ std::vector<Simulator::Step> Simulator::expected_steps(Source source) const {
   if (source == Source::kRecall && varies_) steps.push_back({Act::kAddRecalled, light});
   if (source == Source::kRecall && !varies_) steps = {{Act::kRecall, light}};
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
-    if (plan_->effects[i].need.needed && remembers(plan_->effects[i].effect->spec()))
-      steps.push_back({Act::kApply, i});
+    if (plan_->effects[i].need.needed && remembers(plan_->effects[i].effect->spec())) steps.push_back({Act::kApply, i});
   return steps;
 }
 
@@ -239,8 +238,7 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   const Mission& mission = scene_->mission();
   constexpr double kSecondsPerDay = 86400.0;
   const double quarter = mission.satellite.quarter_days * kSecondsPerDay / mission.simulation.cycle.value();
-  for (const PastCharge& past :
-       past_charge(*camera_.cmos.persistence, exposure, plan_->knobs.memory_block, quarter))
+  for (const PastCharge& past : past_charge(*camera_.cmos.persistence, exposure, plan_->knobs.memory_block, quarter))
     state.past.push_back({.electrons = past_image(past.exposure), .share = past.share});
 }
 

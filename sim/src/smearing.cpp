@@ -66,8 +66,7 @@ SmearedColumns::SmearedColumns(const Scene& scene, int first, int columns, int h
   for (const SceneStar& star : scene.stars()) {
     if (!(star.electrons > 0.0)) continue;
     const StarLight light = smeared_star(scene, star, share);
-    const Rectangle box =
-        intersect(stamp_box(light.centre, light.half_width), {first, rows.y0, columns, rows.ny});
+    const Rectangle box = intersect(stamp_box(light.centre, light.half_width), {first, rows.y0, columns, rows.ny});
     if (box.empty()) continue;
     add_column_light(scene.psf(), light, rows, first, electrons_, scratch);
     along_x.assign(static_cast<std::size_t>(box.nx), 0.0);

@@ -109,9 +109,9 @@ void HotPixels::prepare(CameraState& camera, const PrepareContext& context) cons
   std::map<std::uint32_t, double> electrons;
   for (const std::uint32_t place : drawn_pixels(context.stream, *camera.layout, mission.ccd.bad_pixels.hot))
     electrons[place] = (mission.ccd.bad_pixels.hot_current * exposure).value();
-  for_each_listed(
-      *camera.layout, context.scene.bad_pixels().hot,
-      [&](std::uint32_t place, const HotPixel& hot) { electrons[place] += (hot.current * exposure).value(); });
+  for_each_listed(*camera.layout, context.scene.bad_pixels().hot, [&](std::uint32_t place, const HotPixel& hot) {
+    electrons[place] += (hot.current * exposure).value();
+  });
   for (const auto& [place, level] : electrons) {
     camera.hot_pixels.push_back(place);
     camera.hot_electrons.push_back(level);

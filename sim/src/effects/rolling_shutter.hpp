@@ -5,8 +5,8 @@
 
 namespace astroid {
 
-/// Exposes each row later than the one below it by the line time: stars are where the spacecraft looks, and as bright as
-/// they are, while their own rows are exposed. Bands of rows share the attitude at the time of their middle row.
+/// Exposes each row later than the one below it by the line time: stars are where the spacecraft looks, and as bright
+/// as they are, while their own rows are exposed. Bands of rows share the attitude at the time of their middle row.
 /// @source F116
 class RollingShutter final : public Effect {
  public:

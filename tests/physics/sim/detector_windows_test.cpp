@@ -132,7 +132,8 @@ INSTANTIATE_TEST_SUITE_P(
              }},
         Case{"SmearingThroughFourNodes",
              [](Mission& m) {
-               m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(4.0), .clear_time = Seconds(1.0)};
+               m.ccd.smearing = {
+                   .model = SmearingModel::kFrameTransfer, .time = Seconds(4.0), .clear_time = Seconds(1.0)};
                m.ccd.nodes.count = 4;
              }},
         Case{"PersistenceAndRollingShutter",

@@ -66,7 +66,7 @@ Moments moments_of(const Made& m, std::size_t star) {
 
 TEST(RollingShutter, LetsDriftMoveEachRowByItsOwnTime) {
   Mission mission = cmos_mission();
-  constexpr double kRate = 3000.0;                           // arcsec/d
+  constexpr double kRate = 3000.0;  // arcsec/d
   mission.satellite.drift.yaw_rate = Arcseconds(kRate);
   const Made rolling = made(mission, 7);
   ASSERT_TRUE(rolling.plan->runs("rolling-shutter"));
@@ -80,8 +80,8 @@ TEST(RollingShutter, LetsDriftMoveEachRowByItsOwnTime) {
     const Moments a = moments_of(rolling, star);
     const Moments b = moments_of(at_once, star);
     // Steps of the attitude are a quarter of an exposure at most, and bands of rows share a time.
-    const double step = kRate / 86400.0 * (0.5 * 21.0 / rolling.plan->knobs.attitude_steps +
-                                           0.5 * rolling.plan->knobs.band_rows * kLine);
+    const double step = kRate / 86400.0 *
+                        (0.5 * 21.0 / rolling.plan->knobs.attitude_steps + 0.5 * rolling.plan->knobs.band_rows * kLine);
     const double scale = std::hypot(j.dx_dyaw, j.dy_dyaw);
     EXPECT_NEAR(a.x - b.x, j.dx_dyaw * yaw, scale * step + 1e-6) << star;
     EXPECT_NEAR(a.y - b.y, j.dy_dyaw * yaw, scale * step + 1e-6) << star;
@@ -95,14 +95,16 @@ TEST(RollingShutter, GivesAVariableStarTheTimeOfItsRow) {
   const test::TemporaryFolder folder;
   Mission mission = cmos_mission();
   mission.field.variables =
-      folder.write("v.csv", "id,kind,amplitude_ppm,period_d\nstar1,sinusoid,200000,0.001\nstar3,sinusoid,200000,0.001\n")
+      folder
+          .write("v.csv", "id,kind,amplitude_ppm,period_d\nstar1,sinusoid,200000,0.001\nstar3,sinusoid,200000,0.001\n")
           .string();
   const Made m = made(mission, 5);
   ASSERT_TRUE(m.plan->runs("rolling-shutter"));
   ASSERT_EQ(m.plan->knobs.jitter, JitterTreatment::kNone);
   for (const std::size_t star : {0U, 2U}) {
     const double middle = 5 * 25.0 + 10.5 + kLine * m.scene->stars()[star].position.y;
-    const Variability& v = m.scene->variables()[static_cast<std::size_t>(m.scene->stars()[star].variability)].variability;
+    const Variability& v =
+        m.scene->variables()[static_cast<std::size_t>(m.scene->stars()[star].variability)].variability;
     EXPECT_NEAR(moments_of(m, star).light / 3e5, v.mean(middle - 10.5, middle + 10.5), 1e-6);
   }
   EXPECT_GT(std::fabs(moments_of(m, 0).light - moments_of(m, 2).light), 1000.0);
@@ -128,7 +130,8 @@ TEST(RollingShutter, IsTheSameForEveryTreatmentOfMotion) {
   const Made steps = made(jittering(), 3, stars, [](Plan& p) { p.knobs.jitter = JitterTreatment::kSubSteps; });
   double worst = 0.0;
   for (std::size_t i = 0; i < maps.plan->layout->size(); ++i)
-    worst = std::max(worst, std::fabs(maps.state.expected.whole().pixels()[i] - steps.state.expected.whole().pixels()[i]));
+    worst =
+        std::max(worst, std::fabs(maps.state.expected.whole().pixels()[i] - steps.state.expected.whole().pixels()[i]));
   std::printf("maps and steps differ by at most %.3g e- in a pixel\n", worst);
   EXPECT_LT(worst, 1e-6 * 3e5);
 }

@@ -87,8 +87,8 @@ TEST(FrameCalibration, SubtractsTheLevelOfEachColumn) {
 
 TEST(FrameCalibration, SubtractsTheLevelOfEachHalfOfAColumn) {
   // A window across the middle; overscan of the lower half below, of the upper half above.
-  const auto layout = std::make_shared<const PixelLayout>(
-      std::vector<Rectangle>{{2, 12, 6, 6}, {12, 20, 6, 6}, {2, 30, 6, 4}, {2, -4, 6, 4}, {12, 30, 6, 4}, {12, -4, 6, 4}});
+  const auto layout = std::make_shared<const PixelLayout>(std::vector<Rectangle>{
+      {2, 12, 6, 6}, {12, 20, 6, 6}, {2, 30, 6, 4}, {2, -4, 6, 4}, {12, 30, 6, 4}, {12, -4, 6, 4}});
   CalibrationModel model = plain_model();
   model.subtract_smearing = true;
   model.nodes = 4;

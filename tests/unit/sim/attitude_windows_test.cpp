@@ -75,7 +75,8 @@ TEST(AttitudeWindows, DifferByNoMoreThanTheBoundOfBands) {
   constexpr int kSteps = 80;
   constexpr int kExposures = 4000;
   for (const double delay : {0.5, 2.0, 6.0}) {
-    const std::vector<Attitude> all = windows_of(*model, std::vector<Seconds>{Seconds(0.0), Seconds(delay)}, kExposures, kSteps);
+    const std::vector<Attitude> all =
+        windows_of(*model, std::vector<Seconds>{Seconds(0.0), Seconds(delay)}, kExposures, kSteps);
     double squares = 0.0;
     for (std::size_t k = 0; k < kExposures; ++k) {
       double difference = 0.0;

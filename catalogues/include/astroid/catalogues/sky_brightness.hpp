@@ -48,5 +48,7 @@ PixelNoise expected_pixel_noise(const Mission& mission);
 
 /// Middle of the run, since its start.
 Seconds middle_of_run(const SimulationSettings& simulation);
+/// When the last exposure ends.
+Seconds end_of_run(const SimulationSettings& simulation);
 
 }  // namespace astroid

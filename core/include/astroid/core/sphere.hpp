@@ -15,6 +15,10 @@ struct Direction {
   double z = 0.0;
 };
 
+[[nodiscard]] inline double dot(const Direction& a, const Direction& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
 struct SineCosine {
   double sine = 0.0;
   double cosine = 1.0;

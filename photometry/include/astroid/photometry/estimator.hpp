@@ -53,7 +53,7 @@ struct FieldStar {
 struct ColumnSmearing {
   int first_column = 0;
   std::vector<double> electrons;  ///< e- per pixel and exposure, of first_column and those after it; empty: none
-  std::vector<double> upper;      ///< the same in rows from `upper_row` on, where these are read upwards; empty: as below
+  std::vector<double> upper;  ///< the same in rows from `upper_row` on, where these are read upwards; empty: as below
   int upper_row = 0;
   /// Overscan rows whose mean is subtracted from every pixel of their column; 0: what is smeared stays in the flux.
   int overscan_rows = 0;

@@ -12,8 +12,9 @@ namespace astroid {
 ///
 /// At the end of an exposure kind i of trap has taken the share f_i of the charge that the pixel then held, what was
 /// released into it included; it loses it exponentially with its time constant. What is released between exposures is
-/// lost with the reset. Traps are empty at the start of the run. Electrons are taken and released independently, so that
-/// Poisson charge splits into Poisson charges that are independent of each other: the expectations are all there is.
+/// lost with the reset. Traps are empty at the start of the run. Electrons are taken and released independently, so
+/// that Poisson charge splits into Poisson charges that are independent of each other: the expectations are all there
+/// is.
 /// @source F115; Smith2008
 class PersistenceKernel {
  public:

@@ -45,7 +45,7 @@ class SmearedColumns {
 /// from the register, as of those before it. Empty where both take the same time.
 /// @returns  e- per pixel and exposure at the nominal attitude.
 Plane<float, unit::ExpectedElectrons> missing_from_behind(const Scene& scene,
-                                                         const std::shared_ptr<const PixelLayout>& layout);
+                                                          const std::shared_ptr<const PixelLayout>& layout);
 
 /// e- per pixel and exposure that are smeared into each column of the detector at the nominal attitude; empty without
 /// smearing. @param half  of the rows (ReadoutNodes::half).
