@@ -11,6 +11,7 @@ namespace astroid::detail {
 
 namespace {
 
+static const double kTrial = std::getenv("TRIAL") ? std::atof(std::getenv("TRIAL")) : 0.75;
 static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
 static const bool verbose = std::getenv("FIELD_VERBOSE") != nullptr;
 
@@ -134,6 +135,7 @@ bool FieldFit::accept(const Peak& peak) {
 std::size_t FieldFit::add_from_residuals() {
   filter_.apply(solver_.residual(), solver_.weight());
   constexpr double kLeast = 3.0;
+  const double trial = kTrial * settings_.threshold;
   const bool first = solver_.stars().empty();
   std::vector<Peak> peaks = filter_.peaks(first ? settings_.threshold : std::min(kLeast, settings_.threshold));
   if (first) {
@@ -144,7 +146,7 @@ std::size_t FieldFit::add_from_residuals() {
   std::vector<Peak> found;
   for (Peak& peak : peaks) {
     const FluxEstimate estimate = local_.candidate(peak.x, peak.y);
-    if (!(estimate.flux > settings_.threshold * estimate.error)) continue;
+    if (!(estimate.flux > (local_.nearest() < 2.0 * reach_.fwhm() ? trial : settings_.threshold) * estimate.error)) continue;
     found.push_back({peak.x, peak.y, estimate.flux, estimate.flux / estimate.error});
   }
   std::sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.significance > b.significance; });
@@ -156,6 +158,7 @@ std::size_t FieldFit::add_companions() {
   const auto& stars = solver_.stars();
   const double ring = 0.5 * reach_.fwhm();
   const int half = std::max(1, static_cast<int>(std::lround(0.8 * reach_.fwhm())));
+  const double trial = kTrial * settings_.threshold;
   constexpr int kAngles = 8;
   std::size_t added = 0;
   std::vector<Peak> found;
@@ -178,7 +181,7 @@ std::size_t FieldFit::add_companions() {
       const double x = stars[i].x + ring * std::cos(angle);
       const double y = stars[i].y + ring * std::sin(angle);
       const FluxEstimate estimate = local_.candidate(x, y);
-      if (estimate.flux > settings_.threshold * estimate.error && estimate.flux / estimate.error > best.significance)
+      if (estimate.flux > trial * estimate.error && estimate.flux / estimate.error > best.significance)
         best = {x, y, estimate.flux, estimate.flux / estimate.error};
     }
     if (best.significance > 0.0) found.push_back(best);

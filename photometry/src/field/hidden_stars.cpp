@@ -15,11 +15,11 @@ namespace {
 constexpr double kBinsPerDecade = 8.0;
 constexpr double kClassesPerDecade = 4.0;
 
-// Shifts of a small share e of normal values by much move the median absolute deviation by e / (4 q phi(q)) of itself,
-// q its value: as much as e c² / 2 with c² = 1 / (2 q phi(q)).
-constexpr double kQuartile = 0.6744897501960817;
-constexpr double kQuartileDensity = 0.3177765726;  // phi(q)
-constexpr double kLargestSquare = 1.0 / (2.0 * kQuartile * kQuartileDensity);
+// Shifts of a small share e of normal values by much widen the interval that holds 68.27 % of them by e P / (2 phi(1))
+// of itself: as much as a variance e c² with c² = P / phi(1).
+constexpr double kOneSigmaShare = 0.6826894921370859;
+constexpr double kOneSigmaDensity = 0.24197072451914337;  // phi(1)
+constexpr double kLargestSquare = kOneSigmaShare / kOneSigmaDensity;
 // And the median by e / (2 phi(0)).
 constexpr double kLargestShift = 1.2533141373155003;
 
@@ -100,6 +100,8 @@ HiddenStars::Class HiddenStars::make_class(const FieldSolver& field, double flux
   std::vector<double> py(n);
   std::vector<double> weight(n);
   std::vector<double> other(n);
+  std::vector<double> other_x(n);
+  std::vector<double> other_y(n);
   psf.integrate(star, box, p);
   psf.integrate_gradient(star, box, px, py);
   std::array<double, 6> curvature{};
@@ -124,30 +126,39 @@ HiddenStars::Class HiddenStars::make_class(const FieldSolver& field, double flux
   double near_shift = 0.0;
   double response = 0.0;
   double faint_response = 0.0;
-  for (int k = 0; k < kSteps; ++k) {
-    const double r = (k + 0.5) * step;
+  for (int ring_index = 0; ring_index < kSteps; ++ring_index) {
+    const double r = (ring_index + 0.5) * step;
     const double ring = 2.0 * kPi * r * step;
     constexpr double kDiagonal = 0.7071067811865476;
     for (const PixelPosition direction : {PixelPosition{1.0, 0.0}, PixelPosition{kDiagonal, kDiagonal}}) {
-      psf.integrate({star.x + r * direction.x, star.y + r * direction.y}, box, other);
-      std::array<double, 3> b{};
-      double own = 0.0;
+      const PixelPosition place{star.x + r * direction.x, star.y + r * direction.y};
+      psf.integrate(place, box, other);
+      psf.integrate_gradient(place, box, other_x, other_y);
+      const std::array<const double*, 3> first{p.data(), px.data(), py.data()};
+      const std::array<const double*, 3> second{other.data(), other_x.data(), other_y.data()};
+      std::array<double, 9> shared{};  // of the star's parameters, and the companion's
+      std::array<double, 6> own{};     // of the companion's alone: its flux and place, per unit flux
       double plain = 0.0;
       for (std::size_t i = 0; i < n; ++i) {
-        b[0] += weight[i] * p[i] * other[i];
-        b[1] += weight[i] * px[i] * other[i];
-        b[2] += weight[i] * py[i] * other[i];
-        own += weight[i] * other[i] * other[i];
+        for (std::size_t a = 0; a < 3; ++a)
+          for (std::size_t b = 0; b < 3; ++b) shared[3 * a + b] += weight[i] * first[a][i] * second[b][i];
+        std::size_t element = 0;
+        for (std::size_t a = 0; a < 3; ++a)
+          for (std::size_t b = a; b < 3; ++b) own[element++] += weight[i] * second[a][i] * second[b][i];
         plain += p[i] * other[i];
       }
-      std::array<double, 3> a{};
-      for (std::size_t i = 0; i < 3; ++i)
-        for (std::size_t j = 0; j < 3; ++j) a[i] += covariance[3 * i + j] * b[j];
-      const double gain = a[0];
-      const double left = own - (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
-      constexpr double kLeastShare = 1e-9;
-      const double detected =
-          left > kLeastShare * own ? threshold / std::sqrt(left) : std::numeric_limits<double>::infinity();
+      std::array<double, 9> response_of{};  // of the star's parameters to the companion's
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = 0; b < 3; ++b)
+          for (std::size_t k = 0; k < 3; ++k) response_of[3 * a + b] += covariance[3 * a + k] * shared[3 * k + b];
+      const double gain = response_of[0];
+      std::size_t element = 0;
+      for (std::size_t a = 0; a < 3; ++a)
+        for (std::size_t b = a; b < 3; ++b, ++element)
+          for (std::size_t k = 0; k < 3; ++k) own[element] -= shared[3 * k + a] * response_of[3 * k + b];
+      const double companion_variance = inverse_of_symmetric(own)[0];
+      const double detected = companion_variance > 0.0 ? threshold * std::sqrt(companion_variance)
+                                                       : std::numeric_limits<double>::infinity();
       response += 0.5 * ring * gain * gain;
       faint_response += 0.5 * ring * (plain * reach.noise_pixels()) * (plain * reach.noise_pixels());
       // A companion brighter than the star would itself be the star that is seen.
