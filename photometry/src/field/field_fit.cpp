@@ -3,17 +3,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
-#include <chrono>
+
+#include "astroid/core/math.hpp"
 
 namespace astroid::detail {
 
 namespace {
 
-static const double kTrial = std::getenv("TRIAL") ? std::atof(std::getenv("TRIAL")) : 0.75;
-static double now() { return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count(); }
-static const bool verbose = std::getenv("FIELD_VERBOSE") != nullptr;
+// Beside other stars already this share of the threshold is worth a trial: only the fit with all others decides.
+constexpr double kTrial = 0.75;
 
 }  // namespace
 
@@ -22,15 +20,11 @@ FieldFit::FieldFit(const PixelPsf& psf, const PsfReach& reach, const FieldPixels
     : settings_(settings), reach_(reach), solver_(psf, reach, pixels, settings.sky_cell), filter_(reach), local_(solver_) {}
 
 void FieldFit::run() {
-  double t0 = now();
   solver_.render();
   solver_.assemble();
   for (int round = 0; round < settings_.rounds; ++round) {
-    const double t1 = now();
-    const std::size_t companions = round > 1 ? add_companions() : 0;
-    const double t2 = now();
-    const std::size_t added = add_from_residuals();
-    const double t3 = now();
+    if (round > 1) add_companions();
+    add_from_residuals();
     tried_.insert(tried_.end(), accepted_.begin(), accepted_.end());
     for (const Peak& peak : accepted_) solver_.stars().push_back({peak.x, peak.y, peak.flux});
     const std::size_t changed = accepted_.size();
@@ -38,12 +32,7 @@ void FieldFit::run() {
     solver_.render();
     solver_.assemble();
     iterate(round == 0 ? 3 : 2, 0.05);
-    const double t4 = now();
-    const std::size_t pruned = prune();
-    const double t5 = now();
-    if (verbose)
-      std::fprintf(stderr, "round %d: %zu stars, +%zu residual +%zu companions -%zu pruned; cg %d; comp %.3f detect %.3f fit %.3f prune %.3f\n", round,
-                   solver_.stars().size(), added, companions, pruned, solver_.iterations, t2 - t1, t3 - t2, t4 - t3, t5 - t4);
+    prune();
     if (round > 1 && changed <= solver_.stars().size() / 1000) break;
   }
   for (int i = 0; i < 3; ++i) {
@@ -51,20 +40,14 @@ void FieldFit::run() {
     if (prune() == 0) break;
   }
   filter_.apply(solver_.residual(), solver_.weight());
-  if (verbose) std::fprintf(stderr, "total %.3f\n", now() - t0);
 }
 
 void FieldFit::iterate(int steps, double tolerance, std::size_t enough) {
   constexpr int kMostIterations = 100;
   for (int i = 0; i < steps; ++i) {
-    const double a = now();
     const std::size_t change = solver_.step(tolerance, kMostIterations);
-    const double b = now();
     solver_.render();
-    const double c = now();
     solver_.assemble();
-    const double d = now();
-    if (verbose) std::fprintf(stderr, "  step: change %zu cg %d; step %.3f render %.3f assemble %.3f pairs %zu\n", change, solver_.iterations, b - a, c - b, d - c, solver_.pairs().size());
     if (change <= enough) break;
   }
 }
@@ -178,8 +161,8 @@ std::size_t FieldFit::add_companions() {
     Peak best;
     for (int a = 0; a < kAngles; ++a) {
       const double angle = 2.0 * kPi * a / kAngles;
-      const double x = stars[i].x + ring * std::cos(angle);
-      const double y = stars[i].y + ring * std::sin(angle);
+      const double x = stars[i].x + ring * det::cos(angle);
+      const double y = stars[i].y + ring * det::sin(angle);
       const FluxEstimate estimate = local_.candidate(x, y);
       if (estimate.flux > trial * estimate.error && estimate.flux / estimate.error > best.significance)
         best = {x, y, estimate.flux, estimate.flux / estimate.error};

@@ -262,7 +262,6 @@ std::size_t FieldSolver::step(double tolerance, int most_iterations) {
   double rho = std::inner_product(residual.begin(), residual.end(), conditioned.begin(), 0.0);
   const double enough = tolerance * tolerance * rho;
   for (int i = 0; i < most_iterations && rho > enough && rho > 0.0; ++i) {
-    ++iterations;
     multiply(direction, product);
     const double curvature = std::inner_product(direction.begin(), direction.end(), product.begin(), 0.0);
     if (!(curvature > 0.0)) break;

@@ -72,7 +72,6 @@ class FieldSolver {
   [[nodiscard]] const PsfReach& reach() const { return reach_; }
   [[nodiscard]] const FieldPixels& pixels() const { return pixels_; }
   [[nodiscard]] double coupling_reach() const { return coupling_reach_; }
-  int iterations = 0;  // of conjugate gradients, all in all
 
  private:
   void sort_stars();

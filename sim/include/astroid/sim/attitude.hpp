@@ -8,31 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "astroid/core/geometry.hpp"
+#include "astroid/core/attitude.hpp"
 #include "astroid/core/mission.hpp"
 #include "astroid/core/random.hpp"
 #include "astroid/core/wcs.hpp"
 #include "astroid/sim/jitter_spectrum.hpp"
 
 namespace astroid {
-
-/// Deviation from the nominal pointing, arcsec.
-struct Attitude {
-  double yaw = 0.0, pitch = 0.0, roll = 0.0;
-};
-
-/// Displacement of a star whose Jacobian is given. @returns px
-PixelShift displacement(const AttitudeJacobian& jacobian, const Attitude& attitude);
-
-/// Variance of yaw, pitch and roll, arcsec², where the axes are independent.
-struct AttitudeVariance {
-  double yaw = 0.0, pitch = 0.0, roll = 0.0;
-};
-
-/// Covariance of yaw, pitch and roll, arcsec².
-struct AttitudeCovariance {
-  double yaw_yaw = 0.0, yaw_pitch = 0.0, yaw_roll = 0.0, pitch_pitch = 0.0, pitch_roll = 0.0, roll_roll = 0.0;
-};
 
 /// Mean of a few attitudes, and their covariance about it.
 struct AttitudeMoments {
@@ -41,10 +23,6 @@ struct AttitudeMoments {
 };
 /// @param attitude  not empty; every one counts the same.
 AttitudeMoments attitude_moments(std::span<const Attitude> attitude);
-
-/// The covariance on the detector of a star whose Jacobian is given. @returns px²
-MotionCovariance motion_covariance(const AttitudeJacobian& jacobian, const AttitudeCovariance& attitude);
-MotionCovariance motion_covariance(const AttitudeJacobian& jacobian, const AttitudeVariance& attitude);
 
 /// Where the spacecraft points while exposures are taken.
 class AttitudeModel {
