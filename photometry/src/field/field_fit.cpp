@@ -17,7 +17,11 @@ constexpr double kTrial = 0.75;
 
 FieldFit::FieldFit(const PixelPsf& psf, const PsfReach& reach, const FieldPixels& pixels,
                    const FieldFitSettings& settings)
-    : settings_(settings), reach_(reach), solver_(psf, reach, pixels, settings.sky_cell), filter_(reach), local_(solver_) {}
+    : settings_(settings),
+      reach_(reach),
+      solver_(psf, reach, pixels, settings.sky_cell),
+      filter_(reach),
+      local_(solver_) {}
 
 void FieldFit::run() {
   solver_.render();
@@ -100,7 +104,8 @@ std::size_t FieldFit::prune() {
 bool FieldFit::was_refused(const Peak& peak) const {
   const double least = 0.5 * reach_.fwhm();
   int times = 0;
-  for (const Peak& old : refused_) times += std::abs(old.x - peak.x) < least && std::abs(old.y - peak.y) < least ? 1 : 0;
+  for (const Peak& old : refused_)
+    times += std::abs(old.x - peak.x) < least && std::abs(old.y - peak.y) < least ? 1 : 0;
   return times > 1;
 }
 
@@ -129,7 +134,8 @@ std::size_t FieldFit::add_from_residuals() {
   std::vector<Peak> found;
   for (Peak& peak : peaks) {
     const FluxEstimate estimate = local_.candidate(peak.x, peak.y);
-    if (!(estimate.flux > (local_.nearest() < 2.0 * reach_.fwhm() ? trial : settings_.threshold) * estimate.error)) continue;
+    if (!(estimate.flux > (local_.nearest() < 2.0 * reach_.fwhm() ? trial : settings_.threshold) * estimate.error))
+      continue;
     found.push_back({peak.x, peak.y, estimate.flux, estimate.flux / estimate.error});
   }
   std::sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.significance > b.significance; });

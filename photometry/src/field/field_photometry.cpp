@@ -17,8 +17,8 @@ namespace astroid {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr int kLargestStamp = 40;         // px, half-side
-constexpr double kBlendedShare = 0.5;     // of the information about a flux that neighbours leave: error √2 larger
+constexpr int kLargestStamp = 40;      // px, half-side
+constexpr double kBlendedShare = 0.5;  // of the information about a flux that neighbours leave: error √2 larger
 constexpr double kQuantisation = 1.0 / 12.0;
 
 void check_settings(const FieldPhotometrySettings& settings) {

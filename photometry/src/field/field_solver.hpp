@@ -17,9 +17,9 @@ namespace astroid::detail {
 
 /// What is measured: the pixels of a field in electrons, and what is known of their noise.
 struct FieldPixels {
-  PaddedPlane electrons;      ///< 0 where there is nothing to see
-  PaddedPlane usable;         ///< 1, or 0 in the margin and where a pixel is masked
-  PaddedPlane sky;            ///< a first estimate, e- per pixel
+  PaddedPlane electrons;       ///< 0 where there is nothing to see
+  PaddedPlane usable;          ///< 1, or 0 in the margin and where a pixel is masked
+  PaddedPlane sky;             ///< a first estimate, e- per pixel
   double read_variance = 0.0;  ///< e-² per pixel, of all that is not the photon noise of sky and stars
 };
 
@@ -95,8 +95,8 @@ class FieldSolver {
   PaddedPlane weight_;
   PaddedPlane residual_;
   std::vector<StarTerms> terms_;
-  std::vector<PairTerms> pairs_;             // in the order of first, second
-  std::vector<std::size_t> first_pair_;      // of each star as the first
+  std::vector<PairTerms> pairs_;                // in the order of first, second
+  std::vector<std::size_t> first_pair_;         // of each star as the first
   std::vector<std::array<double, 9>> inverse_;  // of the stars' own blocks
   SkySpline sky_;
   std::vector<double> sky_coefficients_;

@@ -129,7 +129,8 @@ FluxEstimate LocalFit::candidate(double x, double y) {
   weighted_.assign(3 * plane + 4, 0.0F);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i)
-      stamp_[static_cast<std::size_t>(j * stride + i)] = static_cast<float>(fractions_[static_cast<std::size_t>(j * side + i)]);
+      stamp_[static_cast<std::size_t>(j * stride + i)] =
+          static_cast<float>(fractions_[static_cast<std::size_t>(j * side + i)]);
   const StampView stamp{stamp_.data(), stamp_.data() + plane, stamp_.data() + plane, box.x0, box.y0, side, stride};
   const WeightedStamp weighted{weighted_.data(), weighted_.data() + plane, weighted_.data() + 2 * plane};
   const StampSums sums = weigh_stamp(stamp, field_.weight(), field_.residual(), weighted);

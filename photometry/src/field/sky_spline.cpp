@@ -96,7 +96,8 @@ void SkySpline::collect_blocks(std::span<const double> values, std::span<double>
     }
     const SplineWeights& wy = y_.at_block(j);
     for (std::size_t k = 0; k < 4; ++k)
-      for (std::size_t i = 0; i < columns; ++i) coefficients[(wy.first + k) * columns + i] += wy.weight[k] * scratch_[i];
+      for (std::size_t i = 0; i < columns; ++i)
+        coefficients[(wy.first + k) * columns + i] += wy.weight[k] * scratch_[i];
   }
 }
 

@@ -1,4 +1,5 @@
-// A smooth correction to the sky under a field: a tensor product of cubic B-splines, solved for together with the stars.
+// A smooth correction to the sky under a field: a tensor product of cubic B-splines, solved for together with the
+// stars.
 #pragma once
 
 #include <array>

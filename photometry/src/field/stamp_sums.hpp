@@ -30,7 +30,6 @@ StampSums weigh_stamp(const StampView& stamp, const PaddedPlane& weight, const P
 /// The nine sums of a weighted stamp's planes with those of another stamp, over the pixels that they share.
 std::array<double, 9> pair_sums(const StampView& first, const WeightedStamp& weighted, const StampView& second);
 
-
 /// Adds flux times the PSF to the pixels of a stamp.
 void add_stamp(const StampView& stamp, float flux, PaddedPlane& plane);
 

@@ -14,8 +14,8 @@ namespace astroid::detail {
 struct ModelStar {
   double x = 0.0;  ///< px
   double y = 0.0;
-  double flux = 0.0;  ///< e-
-  int half = 0;       ///< half-side of its stamp, px
+  double flux = 0.0;    ///< e-
+  int half = 0;         ///< half-side of its stamp, px
   double change = 0.0;  ///< of its flux in the last step, in units of its error alone
 };
 
@@ -27,7 +27,7 @@ class PsfReach {
 
   /// Half-side of the stamp beyond which no pixel gets more than `level` e- of a star.
   [[nodiscard]] int half(double flux, double level) const;
-  [[nodiscard]] double fwhm() const { return fwhm_; }              ///< px, of a Gaussian with as many noise pixels
+  [[nodiscard]] double fwhm() const { return fwhm_; }                  ///< px, of a Gaussian with as many noise pixels
   [[nodiscard]] double noise_pixels() const { return noise_pixels_; }  ///< 1 / sum p², of a star at a pixel's centre
   [[nodiscard]] int core() const { return core_; }  ///< half-side of the square with 99.9 % of sum p², px
   [[nodiscard]] int most() const { return static_cast<int>(edge_.size()) - 1; }
