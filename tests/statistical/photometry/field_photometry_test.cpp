@@ -7,8 +7,10 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <random>
 #include <vector>
+
+#include "astroid/core/distributions.hpp"
+#include "astroid/core/random.hpp"
 
 namespace astroid {
 namespace {
@@ -19,9 +21,11 @@ struct TrueStar {
 
 // A generator of its own: erf by libm, numbers by the standard library.
 Frame make_field(int side, int count, double sigma, std::vector<TrueStar>& stars, unsigned seed) {
-  std::mt19937_64 random(seed);
-  std::uniform_real_distribution<double> place(-0.5, side - 0.5);
-  std::uniform_real_distribution<double> unit(0.0, 1.0);
+  // Words of a stream, one after the other; what is drawn from them needs no more than quantiles.
+  const RandomStream places = make_stream(seed, StreamId{1}, 0, 0);
+  std::uint64_t word = 0;
+  const auto unit = [&] { return uniform_at_step(places, StepAddress{.step = word++}); };
+  const auto place = [&] { return unit() * side - 0.5; };
   constexpr double kSky = 20.0;       // e-/px
   constexpr double kReadNoise = 5.0;  // e-
   std::vector<double> light(static_cast<std::size_t>(side * side), kSky);
@@ -31,8 +35,8 @@ Frame make_field(int side, int count, double sigma, std::vector<TrueStar>& stars
     // Counts ∝ 10^(0.25 mag) from 12.5 to 20.5.
     const double low = std::pow(10.0, 0.25 * 12.5);
     const double high = std::pow(10.0, 0.25 * 20.5);
-    const double mag = std::log10(low + unit(random) * (high - low)) / 0.25;
-    const TrueStar star{place(random), place(random), std::pow(10.0, 0.4 * (25.0 - mag))};
+    const double mag = std::log10(low + unit() * (high - low)) / 0.25;
+    const TrueStar star{place(), place(), std::pow(10.0, 0.4 * (25.0 - mag))};
     stars.push_back(star);
     const int reach = static_cast<int>(std::ceil(9.0 * sigma));
     const int x0 = static_cast<int>(std::lround(star.x));
@@ -46,10 +50,11 @@ Frame make_field(int side, int count, double sigma, std::vector<TrueStar>& stars
   frame.pixels = Plane<float, unit::Adu>(layout);
   frame.flags = Plane<std::uint8_t, unit::Flags>(layout);
   frame.header.readout_noise = Electrons(kReadNoise);
-  std::normal_distribution<double> readout(0.0, kReadNoise);
+  const RandomStream noise = make_stream(seed, StreamId{2}, 0, 0);
   for (std::size_t i = 0; i < light.size(); ++i) {
-    std::poisson_distribution<int> photons(light[i]);
-    frame.pixels.pixels()[i] = static_cast<float>(photons(random) + readout(random));
+    const std::uint64_t step = 2 * i;
+    frame.pixels.pixels()[i] = static_cast<float>(poisson_at_step(noise, StepAddress{.step = step}, light[i]) +
+                                                  kReadNoise * normal_at_step(noise, StepAddress{.step = step + 1}));
   }
   return frame;
 }
