@@ -6,6 +6,7 @@
 
 #include "field/small_matrix.hpp"
 #include "field/stamp_sums.hpp"
+#include "place.hpp"
 
 namespace astroid::detail {
 
@@ -110,7 +111,7 @@ void FieldSolver::assemble() {
   std::vector<float> scratch;
   for (std::size_t i = 0; i < stars_.size(); ++i) {
     const StampView stamp = stamps_[i];
-    const auto plane = static_cast<std::size_t>(stamp.stride * stamp.side);
+    const auto plane = place_in(0, stamp.side, stamp.stride);
     if (scratch.size() < 3 * plane + 4) scratch.resize(3 * plane + 4);
     first_pair_[i] = pairs_.size();
     assemble_star(i, scratch);
@@ -127,7 +128,7 @@ const PairTerms* FieldSolver::pair(std::size_t first, std::size_t second) const 
 
 void FieldSolver::assemble_star(std::size_t i, std::span<float> scratch) {
   const StampView stamp = stamps_[i];
-  const auto plane = static_cast<std::size_t>(stamp.stride * stamp.side);
+  const auto plane = place_in(0, stamp.side, stamp.stride);
   const WeightedStamp weighted{scratch.data(), scratch.data() + plane, scratch.data() + 2 * plane};
   const StampSums s = weigh_stamp(stamp, weight_, residual_, weighted);
   const double f = stars_[i].flux;

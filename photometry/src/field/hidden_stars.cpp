@@ -51,7 +51,6 @@ void HiddenStars::measure_residuals(const FieldSolver& field, const MatchedFilte
     }
   }
   double squares = 0.0;
-  double sum = 0.0;
   double variance = 0.0;
   std::size_t count = 0;
   const auto limit = static_cast<float>(threshold);
@@ -61,7 +60,6 @@ void HiddenStars::measure_residuals(const FieldSolver& field, const MatchedFilte
     const auto w = field.weight().row(y);
     for (std::size_t x = 0; x < s.size(); ++x) {
       if (t[x] > 0.0F || !(w[x] > 0.0F) || std::abs(s[x]) > limit) continue;
-      sum += static_cast<double>(s[x]);
       squares += static_cast<double>(s[x]) * static_cast<double>(s[x]);
       variance += 1.0 / static_cast<double>(w[x]);
       ++count;

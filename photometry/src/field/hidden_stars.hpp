@@ -42,7 +42,6 @@ class HiddenStars {
   double pixel_variance_ = 1.0;      // e-², of an empty pixel
   double faintest_ = 0.0;            // e-, detected on empty sky
   double area_ = 1.0;                // px²
-  double empty_response_ = 1.0;      // px², integral of the squared response of a flux to light beside it, faint star
   std::vector<double> bin_flux_;     // e-
   std::vector<double> bin_density_;  // stars per px²
   std::vector<Class> classes_;

@@ -6,6 +6,7 @@
 
 #include "field/small_matrix.hpp"
 #include "field/stamp_sums.hpp"
+#include "place.hpp"
 
 namespace astroid::detail {
 
@@ -119,7 +120,7 @@ FluxEstimate LocalFit::candidate(double x, double y) {
   const int half = field_.reach().core();
   const int side = 2 * half + 1;
   const int stride = StarStamps::stride_of(half);
-  const auto plane = static_cast<std::size_t>(stride * side);
+  const auto plane = place_in(0, side, stride);
   const Rectangle box{static_cast<int>(std::floor(x + 0.5)) - half, static_cast<int>(std::floor(y + 0.5)) - half, side,
                       side};
   fractions_.resize(box.size());
@@ -129,8 +130,7 @@ FluxEstimate LocalFit::candidate(double x, double y) {
   weighted_.assign(3 * plane + 4, 0.0F);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i)
-      stamp_[static_cast<std::size_t>(j * stride + i)] =
-          static_cast<float>(fractions_[static_cast<std::size_t>(j * side + i)]);
+      stamp_[place_in(i, j, stride)] = static_cast<float>(fractions_[place_in(i, j, side)]);
   const StampView stamp{stamp_.data(), stamp_.data() + plane, stamp_.data() + plane, box.x0, box.y0, side, stride};
   const WeightedStamp weighted{weighted_.data(), weighted_.data() + plane, weighted_.data() + 2 * plane};
   const StampSums sums = weigh_stamp(stamp, field_.weight(), field_.residual(), weighted);

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "place.hpp"
+
 namespace astroid::detail {
 
 namespace {
@@ -88,8 +90,8 @@ std::array<double, 9> pair_sums(const StampView& first, const WeightedStamp& wei
   const int y0 = std::max(first.y0, second.y0);
   const int y1 = std::min(first.y0 + first.side, second.y0 + second.side);
   for (int y = y0; y < y1; ++y) {
-    const auto a = static_cast<std::size_t>((y - first.y0) * first.stride + (x0 - first.x0));
-    const auto b = static_cast<std::size_t>((y - second.y0) * second.stride + (x0 - second.x0));
+    const auto a = place_in(x0 - first.x0, y - first.y0, first.stride);
+    const auto b = place_in(x0 - second.x0, y - second.y0, second.stride);
     // What lies beyond the common columns is zero in one of the two: rows of both end in zeros.
     for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(0, x1 - x0)); i += 4) {
       const Vector wp = hn::LoadU(d, weighted.p + a + i);

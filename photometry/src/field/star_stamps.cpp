@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "place.hpp"
+
 namespace astroid::detail {
 
 PsfReach::PsfReach(const PixelPsf& psf, PixelPosition centre, int limit) {
@@ -23,7 +25,7 @@ PsfReach::PsfReach(const PixelPsf& psf, PixelPosition centre, int limit) {
         for (int i = 0; i < side; ++i) {
           const int r = std::max(std::abs(i - most), std::abs(j - most));
           double& largest = edge_[static_cast<std::size_t>(r)];
-          largest = std::max(largest, std::abs(fractions[static_cast<std::size_t>(j * side + i)]));
+          largest = std::max(largest, std::abs(fractions[place_in(i, j, side)]));
         }
       }
     }
@@ -33,7 +35,7 @@ PsfReach::PsfReach(const PixelPsf& psf, PixelPosition centre, int limit) {
   std::vector<double> squares(edge_.size(), 0.0);
   for (int j = 0; j < side; ++j)
     for (int i = 0; i < side; ++i) {
-      const double p = centred[static_cast<std::size_t>(j * side + i)];
+      const double p = centred[place_in(i, j, side)];
       squares[static_cast<std::size_t>(std::max(std::abs(i - most), std::abs(j - most)))] += p * p;
     }
   double total = 0.0;
@@ -49,8 +51,7 @@ PsfReach::PsfReach(const PixelPsf& psf, PixelPosition centre, int limit) {
   while (core_ < most && sum < kCoreShare * total) sum += squares[static_cast<std::size_t>(++core_)];
   core_ = std::clamp(core_, 1, most);
   for (int j = -core_; j <= core_; ++j)
-    for (int i = -core_; i <= core_; ++i)
-      kernel_.push_back(centred[static_cast<std::size_t>((j + most) * side + i + most)]);
+    for (int i = -core_; i <= core_; ++i) kernel_.push_back(centred[place_in(i + most, j + most, side)]);
 }
 
 int PsfReach::half(double flux, double level) const {
@@ -64,7 +65,7 @@ void StarStamps::update(std::span<const ModelStar> stars) {
   places_.resize(stars.size());
   std::size_t needed = 0;
   for (std::size_t i = 0; i < stars.size(); ++i) {
-    const auto floats = static_cast<std::size_t>(3 * stride_of(stars[i].half) * (2 * stars[i].half + 1));
+    const auto floats = place_in(0, 2 * stars[i].half + 1, 3 * stride_of(stars[i].half));
     Place& place = places_[i];
     if (place.half != stars[i].half || place.offset != needed) place.half = -1;
     place.offset = needed;
@@ -106,7 +107,7 @@ StampView StarStamps::operator[](std::size_t i) const {
   const Place& place = places_[i];
   const int side = 2 * place.half + 1;
   const int stride = stride_of(place.half);
-  const auto plane = static_cast<std::size_t>(side * stride);
+  const auto plane = place_in(0, side, stride);
   const float* p = pool_.data() + place.offset;
   return {p, p + plane, p + 2 * plane, place.x0, place.y0, side, stride};
 }
