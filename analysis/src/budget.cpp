@@ -19,6 +19,7 @@ namespace {
 std::vector<Mission> as_groups_see(const Mission& mission) {
   if (mission.telescope.group >= 0) return {mission};
   std::vector<Mission> seen;
+  seen.reserve(static_cast<std::size_t>(group_count(mission.telescope)));
   for (int g = 0; g < group_count(mission.telescope); ++g) seen.push_back(group_mission(mission, g));
   return seen;
 }

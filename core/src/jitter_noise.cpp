@@ -70,12 +70,16 @@ double prnu_static_noise(double prnu, std::span<const double> fractions) {
 double ou_mean_rms(double rms, Seconds tau, const Cadence& cadence) {
   const double duration = cadence.exposure_time / tau;
   const double step = cadence.cycle / tau;
-  const double covariance = averaged_covariance(duration);
+  // Of motion much faster than an exposure the hyperbolic sine would overflow; its decaying half is below 1e-43 there.
+  constexpr double kFast = 100.0;
+  const bool fast = duration > kFast;
+  const double covariance = fast ? 1.0 / (duration * duration) : averaged_covariance(duration);
+  const double between = fast ? duration : 0.0;  // from here distances count from the end of an exposure
   const auto n = static_cast<double>(cadence.exposures);
   double sum = 0.0;
   for (long k = cadence.exposures - 1; k > 0; --k) {
     const auto lag = static_cast<double>(k);
-    sum += (n - lag) * det::exp(-lag * step);  // smallest first
+    sum += (n - lag) * det::exp(between - lag * step);  // smallest first
   }
   return rms * std::sqrt((averaged_variance(duration) + 2.0 * covariance * sum / n) / n);
 }

@@ -107,6 +107,7 @@ std::unique_ptr<LightCurveWriter> open_light_curves(std::span<const StreamGroup>
 std::vector<std::size_t> groups_of_cameras(std::span<const StreamGroup> groups) {
   const TelescopeSettings& telescope = groups.front().scene->mission().telescope;
   std::vector<std::size_t> group_of;
+  group_of.reserve(static_cast<std::size_t>(telescope.simulated_cameras));
   for (int camera = 0; camera < telescope.simulated_cameras; ++camera)
     group_of.push_back(groups.size() > 1 ? static_cast<std::size_t>(group_of_camera(telescope, camera)) : 0);
   return group_of;
@@ -240,6 +241,7 @@ StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamO
   const std::int64_t per_bin =
       std::max<std::int64_t>(2, static_cast<std::int64_t>(groups.front().scene->summary().exposures_per_bin));
   std::vector<std::vector<std::uint32_t>> own_flags;
+  own_flags.reserve(group_of.size());
   for (const std::size_t group : group_of) own_flags.push_back(inputs[group].own_flags);
   SeriesStage series(std::move(own_flags), per_bin, static_cast<std::size_t>(length), light_curves.get());
   Stream stream({.simulators = simulators, .group_of = group_of, .groups = inputs, .progress = options.progress},

@@ -43,7 +43,7 @@ std::string table_of_groups(const PreparedRun& run) {
 }  // namespace
 
 std::string plan_text(const PreparedRun& run) {
-  const std::string first = to_text(run.plan(), run.scene());
+  std::string first = to_text(run.plan(), run.scene());
   if (run.groups.size() == 1) return first;
   std::string out = table_of_groups(run) + "Group 1. " + first;
   const std::vector<std::string> known = lines_of(first);

@@ -9,8 +9,11 @@ namespace astroid {
 namespace {
 
 /// By midpoints, of e^(-|t - u| / tau) over both series.
-double by_midpoints(double tau, double cycle, double exposure, int exposures, double lag) {
+double by_midpoints(double tau, const Cadence& cadence, double lag) {
   constexpr int kSteps = 400;
+  const double cycle = cadence.cycle.value();
+  const double exposure = cadence.exposure_time.value();
+  const auto exposures = static_cast<int>(cadence.exposures);
   const double h = exposure / kSteps;
   double sum = 0.0;
   for (int j = 0; j < exposures; ++j)
@@ -28,11 +31,12 @@ double by_midpoints(double tau, double cycle, double exposure, int exposures, do
 TEST(OuMeanCovariance, IsTheIntegralOfTheCovarianceOfInstants) {
   for (const double tau : {3.0, 40.0, 250.0})
     for (const double lag : {0.0, 6.25, -12.5, 18.75, 22.0})
-      for (const int exposures : {1, 3})
+      for (const int exposures : {1, 3}) {
+        const Cadence cadence{Seconds(25), Seconds(21), exposures};
         // Midpoints err by the kink: h² / (6 T tau) of the integral at most.
-        EXPECT_NEAR(ou_mean_covariance(Seconds(tau), {Seconds(25), Seconds(21), exposures}, Seconds(lag)),
-                    by_midpoints(tau, 25.0, 21.0, exposures, lag), 2e-5)
+        EXPECT_NEAR(ou_mean_covariance(Seconds(tau), cadence, Seconds(lag)), by_midpoints(tau, cadence, lag), 2e-5)
             << tau << " " << lag << " " << exposures;
+      }
 }
 
 TEST(OuMeanCovariance, IsContinuousAtNoLagAndEven) {
