@@ -77,7 +77,7 @@ void plan_bands(const Scene& scene, Plan& plan) {
   if (!plan.runs("rolling-shutter")) return;
   const CcdSettings& ccd = scene.mission().ccd;
   plan.knobs.band_rows = plan_band_rows(scene.summary());
-  const RowTiming left(scene.summary(), 0.5 * plan.knobs.band_rows * scene.mission().cmos.line_time);
+  const RowTiming left(scene.summary(), 0.5 * (plan.knobs.band_rows - 1) * scene.mission().cmos.line_time);
   plan.approximations.push_back(fmt::format(
       "{} rows are exposed at the time of their middle row, {} bands in all: this changes fluxes by up to {:.2g} ppm "
       "rms "

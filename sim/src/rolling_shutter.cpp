@@ -23,8 +23,8 @@ int plan_band_rows(const SceneSummary& scene) {
   int rows = std::max(1, mission.ccd.rows);
   const int fewest = (rows + kMostBands - 1) / kMostBands;
   while (rows > fewest) {
-    // The first and last row of a band are half of it away from its middle.
-    const RowTiming timing(scene, 0.5 * static_cast<double>(rows) * line);
+    // The first and last row of a band of R rows are (R - 1) / 2 line times away from its middle.
+    const RowTiming timing(scene, 0.5 * static_cast<double>(rows - 1) * line);
     if (timing.variance_ratio <= kShare * kVarianceTolerance && timing.bias <= kShare * scene.tightest_tolerance())
       break;
     rows = std::max(fewest, (rows + 1) / 2);
