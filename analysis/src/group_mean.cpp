@@ -99,10 +99,7 @@ MotionNoise mean_motion_noise(std::span<const GroupView> groups, std::span<const
                               const RunSetup& setup) {
   const std::size_t count = groups.size();
   ASTROID_CHECK_EQ(motions.size(), count * count);
-  const auto own = [&](std::size_t g) {
-    const CrossMotion& m = motions[g * count + g];
-    return StarMotion{.exposure = {m.exposure.xx, m.exposure.xy, m.exposure.yy}, .bin = {m.bin.xx, m.bin.xy, m.bin.yy}};
-  };
+  const auto own = [&](std::size_t g) { return own_motion(motions[g * count + g]); };
   if (count == 1) return motion_noise(*groups.front().estimator, own(0), setup);
   const double pure = mean(groups, purity);
   MotionNoise out;

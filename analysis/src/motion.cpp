@@ -44,48 +44,41 @@ std::array<Displacement, 3> rms_displacements(const Mission& mission, double off
           Displacement{-roll * offset_y, roll * offset_x}};
 }
 
+/// By displacements in two cameras whose exposures begin `lag` apart.
+CrossMotion shared_motion(const Mission& mission, const std::array<Displacement, 3>& a,
+                          const std::array<Displacement, 3>& b, Seconds lag) {
+  CrossCovariance total;
+  for (std::size_t axis = 0; axis < a.size(); ++axis) {
+    total.xx += a[axis].dx * b[axis].dx;
+    total.xy += a[axis].dx * b[axis].dy;
+    total.yx += a[axis].dy * b[axis].dx;
+    total.yy += a[axis].dy * b[axis].dy;
+  }
+  const SimulationSettings& simulation = mission.simulation;
+  const auto of_mean = [&](long exposures) {
+    const double kept = ou_mean_covariance(mission.satellite.jitter.timescale,
+                                           {simulation.cycle, simulation.exposure_time, exposures}, lag);
+    return CrossCovariance{total.xx * kept, total.xy * kept, total.yx * kept, total.yy * kept};
+  };
+  return {.exposure = of_mean(1), .bin = of_mean(std::lround(mission.analysis.bin / simulation.cycle))};
+}
+
 }  // namespace
 
-StarMotion star_motion(const Mission& mission, double offset_x, double offset_y) {
-  const JitterSettings& jitter = mission.satellite.jitter;
-  if (jitter.model != JitterModel::kRedNoise) return {};
-  MotionCovariance total;
-  for (const Displacement& d : rms_displacements(mission, offset_x, offset_y)) {
-    total.sxx += d.dx * d.dx;
-    total.sxy += d.dx * d.dy;
-    total.syy += d.dy * d.dy;
-  }
+StarMotion own_motion(const CrossMotion& m) {
+  return {.exposure = {m.exposure.xx, m.exposure.xy, m.exposure.yy}, .bin = {m.bin.xx, m.bin.xy, m.bin.yy}};
+}
 
-  const SimulationSettings& simulation = mission.simulation;
-  const auto kept = [&](long exposures) {  // of the variance, in the mean over so many exposures
-    const double rms = ou_mean_rms(1.0, jitter.timescale, {simulation.cycle, simulation.exposure_time, exposures});
-    return rms * rms;
-  };
-  const double exposure = kept(1);
-  const double bin = kept(std::lround(mission.analysis.bin / simulation.cycle));
-  return {{total.sxx * exposure, total.sxy * exposure, total.syy * exposure},
-          {total.sxx * bin, total.sxy * bin, total.syy * bin}};
+StarMotion star_motion(const Mission& mission, double offset_x, double offset_y) {
+  if (mission.satellite.jitter.model != JitterModel::kRedNoise) return {};
+  const auto displacements = rms_displacements(mission, offset_x, offset_y);
+  return own_motion(shared_motion(mission, displacements, displacements, Seconds(0.0)));
 }
 
 CrossMotion cross_motion(const Mission& a, const Mission& b) {
-  const JitterSettings& jitter = a.satellite.jitter;
-  if (jitter.model != JitterModel::kRedNoise) return {};
-  const auto in_a = rms_displacements(a, 0.0, 0.0);
-  const auto in_b = rms_displacements(b, 0.0, 0.0);
-  const SimulationSettings& simulation = a.simulation;
-  const auto shared = [&](long exposures) {
-    const double kept = ou_mean_covariance(jitter.timescale, {simulation.cycle, simulation.exposure_time, exposures},
-                                           b.simulation.stagger - simulation.stagger);
-    CrossCovariance c;
-    for (std::size_t axis = 0; axis < in_a.size(); ++axis) {
-      c.xx += in_a[axis].dx * in_b[axis].dx;
-      c.xy += in_a[axis].dx * in_b[axis].dy;
-      c.yx += in_a[axis].dy * in_b[axis].dx;
-      c.yy += in_a[axis].dy * in_b[axis].dy;
-    }
-    return CrossCovariance{c.xx * kept, c.xy * kept, c.yx * kept, c.yy * kept};
-  };
-  return {.exposure = shared(1), .bin = shared(std::lround(a.analysis.bin / simulation.cycle))};
+  if (a.satellite.jitter.model != JitterModel::kRedNoise) return {};
+  return shared_motion(a, rms_displacements(a, 0.0, 0.0), rms_displacements(b, 0.0, 0.0),
+                       b.simulation.stagger - a.simulation.stagger);
 }
 
 MotionCovariance motion_like_pixel_noise(const MotionCovariance& bin, double exposures_per_bin, int cameras) {

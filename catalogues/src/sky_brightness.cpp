@@ -14,6 +14,7 @@
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/run_time.hpp"
 #include "astroid/core/sphere.hpp"
 #include "astroid/core/throughput.hpp"
 
@@ -126,16 +127,6 @@ ElectronsPerSecond sky_rate(const Mission& mission, ElectronsPerSecond rate, Sky
   const double mjd = mission.simulation.start_mjd + time.value() / kSecondsPerDay;
   const double stars = field.unresolved_stars >= 0.0 ? field.unresolved_stars : unresolved_starlight(direction).value;
   return (zodiacal_light(direction, mjd).value + stars) * rate;
-}
-
-Seconds middle_of_run(const SimulationSettings& simulation) {
-  return simulation.stagger + Seconds(0.5 * (static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() +
-                                             simulation.exposure_time.value()));
-}
-
-Seconds end_of_run(const SimulationSettings& simulation) {
-  return simulation.stagger + Seconds(static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() +
-                                      simulation.exposure_time.value());
 }
 
 ElectronsPerSecond mean_background_rate(const Mission& mission) {

@@ -29,9 +29,6 @@ constexpr double kEdgeWidth = 1e-10;     // deg inside the horizon that count as
 constexpr std::size_t kCardLength = 80;  // characters, FITS standard
 constexpr double kWorldEquinox = 2000.0;
 
-Direction combine(double a, const Direction& u, double b, const Direction& v) {
-  return {a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
-}
 Direction unit_vector(const Direction& u) {
   return combine(1.0 / det::sqrt(dot(u, u)), u, 0.0, u);
 }
@@ -191,10 +188,7 @@ struct SkyProjection::State {
 
   // @param cd  degrees on the tangent plane per pixel, row by row: (east, north) of x, y
   void set_frame(SkyPosition about, const std::array<double, 4>& cd) {
-    const SineCosine ra = sine_cosine(Degrees(about.ra));
-    const SineCosine dec = sine_cosine(Degrees(about.dec));
-    const Direction east{-ra.sine, ra.cosine, 0.0};
-    const Direction north{-dec.sine * ra.cosine, -dec.sine * ra.sine, dec.cosine};
+    const auto [east, north] = horizon(about);
     frame.axis = to_direction(about);
     frame.x = unit_vector(combine(cd[0], east, cd[2], north));
     const Direction y = combine(cd[1], east, cd[3], north);

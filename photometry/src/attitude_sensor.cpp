@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "small_matrix.hpp"
 #include "star_light.hpp"
 
 namespace astroid {
@@ -15,46 +16,19 @@ constexpr unsigned kUnusable = pixel_flag::kFullWell | pixel_flag::kAdcSaturated
 // Two degrees of freedom beyond which a guide star is not believed: exp(-25 / 2) is 4e-6.
 constexpr double kOutlier = 25.0;
 
-/// A symmetric 3×3 matrix that is the identity plus a positive semi-definite one, so that its inverse exists.
-struct Symmetric3 {
-  double xx = 1.0, xy = 0.0, xz = 0.0, yy = 1.0, yz = 0.0, zz = 1.0;
+using Symmetric3 = std::array<double, 6>;  // xx, xy, xz, yy, yz, zz
 
-  void add_square(const std::array<double, 3>& a, const std::array<double, 3>& b, double weight) {
-    xx += weight * a[0] * b[0];
-    yy += weight * a[1] * b[1];
-    zz += weight * a[2] * b[2];
-    xy += 0.5 * weight * (a[0] * b[1] + a[1] * b[0]);
-    xz += 0.5 * weight * (a[0] * b[2] + a[2] * b[0]);
-    yz += 0.5 * weight * (a[1] * b[2] + a[2] * b[1]);
-  }
+/// Adds weight (a b^T + b a^T) / 2.
+void add_product(Symmetric3& sum, double weight, const std::array<double, 3>& a, const std::array<double, 3>& b) {
+  std::size_t element = 0;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    for (std::size_t j = i; j < a.size(); ++j) sum[element++] += 0.5 * weight * (a[i] * b[j] + a[j] * b[i]);
+}
 
-  [[nodiscard]] Symmetric3 inverse() const {
-    // By the Cholesky factor, whose diagonal is 1 or more.
-    const double a = std::sqrt(xx);
-    const double b = xy / a;
-    const double c = xz / a;
-    const double d = std::sqrt(yy - b * b);
-    const double e = (yz - b * c) / d;
-    const double f = std::sqrt(zz - c * c - e * e);
-    // The inverse of the factor, lower triangle.
-    const double ia = 1.0 / a;
-    const double id = 1.0 / d;
-    const double i_f = 1.0 / f;
-    const double ib = -b * ia * id;
-    const double ie = -e * id * i_f;
-    const double ic = -(c * ia + e * ib) * i_f;
-    return {.xx = ia * ia + ib * ib + ic * ic,
-            .xy = ib * id + ic * ie,
-            .xz = ic * i_f,
-            .yy = id * id + ie * ie,
-            .yz = ie * i_f,
-            .zz = i_f * i_f};
-  }
-
-  [[nodiscard]] std::array<double, 3> operator*(const std::array<double, 3>& v) const {
-    return {xx * v[0] + xy * v[1] + xz * v[2], xy * v[0] + yy * v[1] + yz * v[2], xz * v[0] + yz * v[1] + zz * v[2]};
-  }
-};
+std::array<double, 3> product(const std::array<double, 9>& m, const std::array<double, 3>& v) {
+  return {m[0] * v[0] + m[1] * v[1] + m[2] * v[2], m[3] * v[0] + m[4] * v[1] + m[5] * v[2],
+          m[6] * v[0] + m[7] * v[1] + m[8] * v[2]};
+}
 
 std::array<double, 3> row_x(const AttitudeJacobian& j) {
   return {j.dx_dyaw, j.dx_dpitch, j.dx_droll};
@@ -82,7 +56,7 @@ AttitudeJacobian scaled(const AttitudeJacobian& j, const Attitude& reach) {
 
 /// The normal equations of the attitude in units of the reach.
 struct AttitudeSensor::Normal {
-  Symmetric3 matrix;
+  Symmetric3 matrix{1.0, 0.0, 0.0, 1.0, 0.0, 1.0};  // the prior, to which the stars add: it always has an inverse
   std::array<double, 3> right{};
   std::size_t guides = 0;
 };
@@ -197,9 +171,9 @@ AttitudeSensor::Normal AttitudeSensor::normal(std::span<const Displacement> disp
     const Guide& guide = guides_[g];
     const std::array<double, 3> x = row_x(guide.motion);
     const std::array<double, 3> y = row_y(guide.motion);
-    sum.matrix.add_square(x, x, guide.xx);
-    sum.matrix.add_square(x, y, 2.0 * guide.xy);
-    sum.matrix.add_square(y, y, guide.yy);
+    add_product(sum.matrix, guide.xx, x, x);
+    add_product(sum.matrix, 2.0 * guide.xy, x, y);
+    add_product(sum.matrix, guide.yy, y, y);
     for (std::size_t k = 0; k < x.size(); ++k) sum.right[k] += x[k] * displacements[g].x + y[k] * displacements[g].y;
     ++sum.guides;
   }
@@ -222,7 +196,7 @@ MeasuredAttitude AttitudeSensor::measure(const Frame& frame) const {
   // One after the other, the worst first: a bright particle makes good stars look bad as well.
   for (std::size_t round = 0;; ++round) {
     const Normal equations = normal(displacements);
-    const std::array<double, 3> attitude = equations.matrix.inverse() * equations.right;
+    const std::array<double, 3> attitude = product(detail::inverse_of_symmetric(equations.matrix), equations.right);
     double worst = kOutlier;
     Displacement* outlier = nullptr;
     for (std::size_t g = 0; g < guides_.size(); ++g) {
@@ -243,14 +217,14 @@ MeasuredAttitude AttitudeSensor::measure(const Frame& frame) const {
 
 AttitudeCovariance AttitudeSensor::covariance() const {
   const std::vector<Displacement> all(guides_.size(), Displacement{.good = true});
-  const Symmetric3 c = normal(all).matrix.inverse();
+  const std::array<double, 9> c = detail::inverse_of_symmetric(normal(all).matrix);
   const Attitude& r = reach_;
-  return {.yaw_yaw = c.xx * r.yaw * r.yaw,
-          .yaw_pitch = c.xy * r.yaw * r.pitch,
-          .yaw_roll = c.xz * r.yaw * r.roll,
-          .pitch_pitch = c.yy * r.pitch * r.pitch,
-          .pitch_roll = c.yz * r.pitch * r.roll,
-          .roll_roll = c.zz * r.roll * r.roll};
+  return {.yaw_yaw = c[0] * r.yaw * r.yaw,
+          .yaw_pitch = c[1] * r.yaw * r.pitch,
+          .yaw_roll = c[2] * r.yaw * r.roll,
+          .pitch_pitch = c[4] * r.pitch * r.pitch,
+          .pitch_roll = c[5] * r.pitch * r.roll,
+          .roll_roll = c[8] * r.roll * r.roll};
 }
 
 AttitudeResponse attitude_response(const StarEstimator& estimator, const AttitudeJacobian& j) {

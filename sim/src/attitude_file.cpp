@@ -7,9 +7,9 @@
 #include <optional>
 #include <utility>
 
-#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/run_time.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "named_columns.hpp"
 

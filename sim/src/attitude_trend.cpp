@@ -9,6 +9,7 @@
 #include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/run_time.hpp"
 
 namespace astroid {
 

@@ -13,7 +13,7 @@ namespace astroid {
 
 namespace {
 
-/// Nanoseconds a pixel and exposure, measured with tests/bench (BM_Effects) on one core of the machine named in
+/// Nanoseconds a pixel and exposure, measured by `astroid doctor --calibrate` on one core of the machine named in
 /// docs/performance.md, which has AVX-512; with SSE4 alone noise takes two to three times as long.
 struct PixelCost {
   std::string_view effect;

@@ -27,6 +27,11 @@ namespace {
 
 /// Keeps the stars that are targets in every group, in the order of the first.
 void find_common_targets(PreparedRun& run) {
+  if (run.groups.size() == 1) {
+    const std::span<const std::size_t> all = run.scene().targets();
+    run.groups.front().targets.assign(all.begin(), all.end());
+    return;
+  }
   std::unordered_map<std::string, std::size_t> seen;  // by how many groups
   for (const PreparedGroup& group : run.groups)
     for (const std::size_t target : group.scene->targets()) ++seen[group.scene->stars()[target].id];

@@ -29,7 +29,6 @@ void FieldFit::run() {
   for (int round = 0; round < settings_.rounds; ++round) {
     if (round > 1) add_companions();
     add_from_residuals();
-    tried_.insert(tried_.end(), accepted_.begin(), accepted_.end());
     for (const Peak& peak : accepted_) solver_.stars().push_back({peak.x, peak.y, peak.flux});
     const std::size_t changed = accepted_.size();
     accepted_.clear();

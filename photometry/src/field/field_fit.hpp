@@ -39,7 +39,6 @@ class FieldFit {
   MatchedFilter filter_;
   LocalFit local_;
   std::vector<Peak> accepted_;
-  std::vector<Peak> tried_;    // all that were added, with the significance that they promised
   std::vector<Peak> refused_;  // those that the fit with all others found too faint
 };
 

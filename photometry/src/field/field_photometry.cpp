@@ -108,6 +108,8 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
   check_settings(settings);
   ASTROID_CHECK_EQ(frame.pixels.layout().regions().size(), std::size_t{1});
   const Rectangle area = frame.pixels.layout().regions()[0];
+  ASTROID_CHECK_EQ(area.x0, 0);  // the PSF may vary over the frame, and is asked for in its pixels
+  ASTROID_CHECK_EQ(area.y0, 0);
   const detail::PsfReach reach(psf, {area.x0 + 0.5 * area.nx, area.y0 + 0.5 * area.ny}, kLargestStamp);
   constexpr int kMargin = 8;  // px: stars may lie a little outside, and vectors are read whole
   const detail::PaddedPlane empty(area.nx, area.ny, reach.most() + kMargin);

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <numeric>
 
-#include "field/small_matrix.hpp"
+#include "field/place.hpp"
 #include "field/stamp_sums.hpp"
-#include "place.hpp"
+#include "small_matrix.hpp"
 
 namespace astroid::detail {
 
@@ -136,9 +136,8 @@ void FieldSolver::assemble_star(std::size_t i, std::span<float> scratch) {
   t.curvature = {s.pp, f * s.ppx, f * s.ppy, f * f * s.pxpx, f * f * s.pxpy, f * f * s.pypy};
   t.slope = {s.rp, f * s.rpx, f * s.rpy};
   t.sky = {s.p, f * s.px, f * s.py};
-  static thread_local std::vector<std::uint32_t> near;
-  neighbours_.find(stars_[i].x, stars_[i].y, coupling_reach_, near);
-  for (const std::uint32_t k : near) {
+  neighbours_.find(stars_[i].x, stars_[i].y, coupling_reach_, near_);
+  for (const std::uint32_t k : near_) {
     if (k <= i) continue;
     PairTerms pair{static_cast<std::uint32_t>(i), k, pair_sums(stamp, weighted, stamps_[k])};
     const double g = stars_[k].flux;

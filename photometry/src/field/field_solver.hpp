@@ -91,6 +91,7 @@ class FieldSolver {
   std::vector<ModelStar> stars_;
   StarStamps stamps_;
   Neighbours neighbours_;
+  std::vector<std::uint32_t> near_;
   PaddedPlane light_;
   PaddedPlane weight_;
   PaddedPlane residual_;

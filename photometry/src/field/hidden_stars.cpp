@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "astroid/core/math.hpp"
-#include "field/small_matrix.hpp"
+#include "small_matrix.hpp"
 
 namespace astroid::detail {
 
@@ -20,8 +20,6 @@ constexpr double kClassesPerDecade = 4.0;
 constexpr double kOneSigmaShare = 0.6826894921370859;
 constexpr double kOneSigmaDensity = 0.24197072451914337;  // phi(1)
 constexpr double kLargestSquare = kOneSigmaShare / kOneSigmaDensity;
-// And the median by e / (2 phi(0)).
-constexpr double kLargestShift = 1.2533141373155003;
 
 }  // namespace
 
@@ -116,12 +114,10 @@ HiddenStars::Class HiddenStars::make_class(const FieldSolver& field, double flux
   }
   const std::array<double, 9> covariance = inverse_of_symmetric(curvature);
   const double variance = covariance[0];
-  const double sigma = std::sqrt(variance);
 
   const double step = 0.2 * std::max(1.0, reach.fwhm());
   constexpr int kSteps = 12;
   double near_variance = 0.0;
-  double near_shift = 0.0;
   double response = 0.0;
   double faint_response = 0.0;
   for (int ring_index = 0; ring_index < kSteps; ++ring_index) {
@@ -164,14 +160,13 @@ HiddenStars::Class HiddenStars::make_class(const FieldSolver& field, double flux
       for (std::size_t bin = 0; bin < bin_flux_.size() && bin_flux_[bin] < most; ++bin) {
         const double shift = bin_flux_[bin] * gain;
         near_variance += 0.5 * ring * bin_density_[bin] * std::min(shift * shift, kLargestSquare * variance);
-        near_shift += 0.5 * ring * bin_density_[bin] * std::clamp(shift, -kLargestShift * sigma, kLargestShift * sigma);
       }
     }
   }
   const double empty_variance = pixel_variance_ * reach.noise_pixels();
   const double far_variance =
       std::max(0.0, residual_variance_ - 1.0) * empty_variance * response / std::max(faint_response, 1e-300);
-  return {det::log10(flux), (near_variance + far_variance) / variance, near_shift};
+  return {det::log10(flux), (near_variance + far_variance) / variance};
 }
 
 double HiddenStars::excess(double flux) const {
@@ -182,16 +177,6 @@ double HiddenStars::excess(double flux) const {
   if (i + 1 >= classes_.size()) return classes_[i].excess;
   const double share = std::clamp(t - static_cast<double>(i), 0.0, 1.0);
   return classes_[i].excess + share * (classes_[i + 1].excess - classes_[i].excess);
-}
-
-double HiddenStars::shift(double flux) const {
-  if (classes_.empty()) return 0.0;
-  const double t = (det::log10(std::max(flux, 1e-300)) - classes_.front().log_flux) * kClassesPerDecade;
-  const double last = static_cast<double>(classes_.size() - 1);
-  const auto i = static_cast<std::size_t>(std::clamp(t, 0.0, std::max(0.0, last - 1.0)));
-  if (i + 1 >= classes_.size()) return classes_[i].shift;
-  const double share = std::clamp(t - static_cast<double>(i), 0.0, 1.0);
-  return classes_[i].shift + share * (classes_[i + 1].shift - classes_[i].shift);
 }
 
 }  // namespace astroid::detail

@@ -24,9 +24,6 @@ class HiddenStars {
 
   /// Relative excess of the variance of a star of that flux.
   [[nodiscard]] double excess(double flux) const;
-  [[nodiscard]] double shift(double flux) const;
-  /// Of fluxes at places without stars: 1 where nothing but noise is left.
-  [[nodiscard]] double residual_variance() const { return residual_variance_; }
 
  private:
   void measure_residuals(const FieldSolver& field, const MatchedFilter& filter, double threshold);
@@ -34,11 +31,10 @@ class HiddenStars {
   struct Class {
     double log_flux = 0.0;
     double excess = 0.0;
-    double shift = 0.0;
   };
   [[nodiscard]] Class make_class(const FieldSolver& field, double flux, double threshold) const;
 
-  double residual_variance_ = 1.0;
+  double residual_variance_ = 1.0;   // of fluxes at places without stars: 1 where nothing but noise is left
   double pixel_variance_ = 1.0;      // e-², of an empty pixel
   double faintest_ = 0.0;            // e-, detected on empty sky
   double area_ = 1.0;                // px²

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "field/small_matrix.hpp"
+#include "field/place.hpp"
 #include "field/stamp_sums.hpp"
-#include "place.hpp"
+#include "small_matrix.hpp"
 
 namespace astroid::detail {
 
@@ -98,8 +98,7 @@ StarCovariance LocalFit::covariance(std::size_t star) {
   for (std::size_t i = 0; i < 3; ++i)
     for (std::size_t j = 0; j < 3; ++j)
       for (std::size_t k = std::max(i, j); k < 3; ++k) covariance[i][j] += inverse[k][i] * inverse[k][j];
-  constexpr double kTakenOut = 1e100;  // of a diagonal of the factor: cholesky()
-  result.degenerate = !(alone > 0.0) || matrix_[n * n - 1] > kTakenOut;
+  result.degenerate = !(alone > 0.0) || matrix_[n * n - 1] == kTakenOut;
   if (result.degenerate) {
     result.covariance.fill(kInfinity);
     result.share = 0.0;
@@ -149,8 +148,7 @@ FluxEstimate LocalFit::candidate(double x, double y) {
   cholesky(matrix_, n, kLeastShare);
   solve_lower(matrix_, n, right_);
   const double diagonal = matrix_[n * n - 1];
-  constexpr double kTakenOut = 1e100;
-  if (!(diagonal > 0.0) || diagonal > kTakenOut) return {0.0, kInfinity};
+  if (!(diagonal > 0.0) || diagonal == kTakenOut) return {0.0, kInfinity};
   return {right_[others] / diagonal, 1.0 / diagonal};
 }
 

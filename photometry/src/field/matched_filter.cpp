@@ -18,26 +18,15 @@ std::vector<double> squares_of(std::span<const double> kernel) {
   return squares;
 }
 
-// out[x] = sum_k weight[k] in[x + k], for n values; reads up to 3 beyond.
-void filter_row(const float* in, std::span<const float> weights, float* out, std::size_t n, bool add) {
+// out[x] = sum_k weight[k] in[x + k step], for n values; reads up to 3 beyond. Along a row the step is 1, down a column
+// the stride of the plane.
+void filter_line(const float* in, std::size_t step, std::span<const float> weights, std::span<float> out, bool add) {
   const Four d;
-  for (std::size_t x = 0; x < n; x += 4) {
-    auto sum = add ? hn::LoadU(d, out + x) : hn::Zero(d);
+  for (std::size_t x = 0; x < out.size(); x += 4) {
+    auto sum = add ? hn::LoadU(d, out.data() + x) : hn::Zero(d);
     for (std::size_t k = 0; k < weights.size(); ++k)
-      sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[k]), hn::LoadU(d, in + x + k)));
-    hn::StoreU(sum, d, out + x);
-  }
-}
-
-// The same down a column of values `stride` apart.
-void filter_column(const float* in, std::size_t stride, std::span<const float> weights, float* out, std::size_t n,
-                   bool add) {
-  const Four d;
-  for (std::size_t x = 0; x < n; x += 4) {
-    auto sum = add ? hn::LoadU(d, out + x) : hn::Zero(d);
-    for (std::size_t k = 0; k < weights.size(); ++k)
-      sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[k]), hn::LoadU(d, in + k * stride + x)));
-    hn::StoreU(sum, d, out + x);
+      sum = hn::Add(sum, hn::Mul(hn::Set(d, weights[k]), hn::LoadU(d, in + k * step + x)));
+    hn::StoreU(sum, d, out.data() + x);
   }
 }
 
@@ -97,12 +86,10 @@ MatchedFilter::MatchedFilter(const PsfReach& reach)
 
 void MatchedFilter::filter(const PaddedPlane& in, const SeparableKernel& kernel, PaddedPlane& out) {
   const int half = kernel.half();
-  const auto n = static_cast<std::size_t>(in.nx());
   bool add = false;
   for (const SeparableKernel::Term& term : kernel.terms()) {
-    for (int y = -half; y < in.ny() + half; ++y) filter_row(in.at(-half, y), term.row, rows_.at(0, y), n, false);
-    for (int y = 0; y < in.ny(); ++y)
-      filter_column(rows_.at(0, y - half), rows_.stride(), term.column, out.at(0, y), n, add);
+    for (int y = -half; y < in.ny() + half; ++y) filter_line(in.at(-half, y), 1, term.row, rows_.row(y), false);
+    for (int y = 0; y < in.ny(); ++y) filter_line(rows_.at(0, y - half), rows_.stride(), term.column, out.row(y), add);
     add = true;
   }
 }

@@ -43,7 +43,6 @@ class MatchedFilter {
   /// Local maxima above `threshold`, row by row, to a fraction of a pixel.
   [[nodiscard]] std::vector<Peak> peaks(double threshold) const;
   [[nodiscard]] const PaddedPlane& significance() const { return significance_; }
-  [[nodiscard]] const PaddedPlane& information() const { return information_; }  ///< sum w p²
 
  private:
   void filter(const PaddedPlane& in, const SeparableKernel& kernel, PaddedPlane& out);
@@ -53,7 +52,7 @@ class MatchedFilter {
   PaddedPlane weighted_;
   PaddedPlane rows_;
   PaddedPlane significance_;
-  PaddedPlane information_;
+  PaddedPlane information_;  // sum w p²
 };
 
 }  // namespace astroid::detail

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "place.hpp"
+#include "field/place.hpp"
 
 namespace astroid::detail {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "place.hpp"
+#include "field/place.hpp"
 
 namespace astroid::detail {
 

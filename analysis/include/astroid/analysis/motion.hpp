@@ -33,6 +33,9 @@ StarMotion star_motion(const Mission& mission, double offset_x, double offset_y)
 /// The same of a star on the axes of two cameras, whose exposures may begin at different times.
 CrossMotion cross_motion(const Mission& a, const Mission& b);
 
+/// The motion of a star in one camera, from what it is with itself.
+StarMotion own_motion(const CrossMotion& motion);
+
 /// Motion as noise of one exposure of one camera that would average out like pixel noise and leave as much in a bin:
 /// all cameras move together, and slow motion stays. What GroundModel::motion wants.
 /// @param bin                covariance of the mean displacement over a bin, px².

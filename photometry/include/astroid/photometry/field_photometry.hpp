@@ -24,10 +24,11 @@ struct FieldPhotometrySettings {
 /// nothing new is significant. Flux errors are those of the fit with all neighbours free, and of stars too faint or
 /// too near to another to be detected, whose effect is measured in the residuals and follows from the counts.
 /// Pixels that are flagged or not finite have no weight. Sources are in the order of bands of rows.
-/// @param frame  with gain, bias and readout noise in its header; without readout noise, the noise is measured.
+/// @param frame  region 0 from pixel (0, 0), with gain, bias and readout noise in its header; without readout noise,
+/// the noise is measured.
 /// @param sky    coordinates of the image, or nullptr.
 /// @throws InputError unless the threshold and the number of rounds are positive.
-/// @source Stetson1987; differs: one system of equations for the field, solved by conjugate gradients
+/// @source F133, F134; Stetson1987; differs: one system of equations for the field, solved by conjugate gradients
 std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjection* sky, const PixelPsf& psf,
                                              const FieldPhotometrySettings& settings);
 

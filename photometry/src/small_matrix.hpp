@@ -22,13 +22,13 @@ inline std::array<double, 9> inverse_of_symmetric(const std::array<double, 6>& m
   return {s * a, s * b, s * c, s * b, d, e, s * c, e, f};
 }
 
+/// The diagonal of a factor's row that was taken out.
+inline constexpr double kTakenOut = 1e150;
+
 /// Cholesky factor of a symmetric n × n matrix, in place in the lower triangle. Rows whose diagonal loses more than
 /// 1 - `least` of itself to those before have no information of their own: they are taken out (their factor is zero
-/// but for a huge diagonal).
-/// @returns the number of rows taken out
-inline int cholesky(std::span<double> m, std::size_t n, double least) {
-  constexpr double kTakenOut = 1e150;
-  int out = 0;
+/// but for kTakenOut on the diagonal).
+inline void cholesky(std::span<double> m, std::size_t n, double least) {
   for (std::size_t j = 0; j < n; ++j) {
     double diagonal = m[j * n + j];
     const double given = diagonal;
@@ -36,7 +36,6 @@ inline int cholesky(std::span<double> m, std::size_t n, double least) {
     if (!(diagonal > least * given)) {
       for (std::size_t k = 0; k < j; ++k) m[j * n + k] = 0.0;
       m[j * n + j] = kTakenOut;
-      ++out;
     } else {
       m[j * n + j] = std::sqrt(diagonal);
     }
@@ -47,7 +46,6 @@ inline int cholesky(std::span<double> m, std::size_t n, double least) {
       m[i * n + j] = sum * scale;
     }
   }
-  return out;
 }
 
 /// Solves L u = v in place.
@@ -55,15 +53,6 @@ inline void solve_lower(std::span<const double> factor, std::size_t n, std::span
   for (std::size_t i = 0; i < n; ++i) {
     double sum = v[i];
     for (std::size_t k = 0; k < i; ++k) sum -= factor[i * n + k] * v[k];
-    v[i] = sum / factor[i * n + i];
-  }
-}
-
-/// Solves L^T u = v in place.
-inline void solve_upper(std::span<const double> factor, std::size_t n, std::span<double> v) {
-  for (std::size_t i = n; i-- > 0;) {
-    double sum = v[i];
-    for (std::size_t k = i + 1; k < n; ++k) sum -= factor[k * n + i] * v[k];
     v[i] = sum / factor[i * n + i];
   }
 }
