@@ -97,7 +97,7 @@ void check_cmos(const Mission& m, Checker& checker) {
   checker.require(cmos.telegraph_fraction == 0.0 || cmos.telegraph_current.value() > 0.0, "CMOS/Telegraph/Current",
                   "CMOS/Telegraph/Fraction", "is 0, though pixels jump", "more than 0 e-/px/s");
   checker.require(cmos.persistence.time.size() == cmos.persistence.fraction.size(), "CMOS/Persistence/Time",
-                  "CMOS/Persistence/Fraction", fmt::format("has {} values", cmos.persistence.time.size()),
+                  "CMOS/Persistence/Fraction", fmt::format("is a list of {}", cmos.persistence.time.size()),
                   fmt::format("{}, one for each fraction", cmos.persistence.fraction.size()));
   double held = 0.0;
   for (const double share : cmos.persistence.fraction) held += share;

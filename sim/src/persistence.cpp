@@ -74,4 +74,12 @@ std::vector<PastCharge> past_charge(const PersistenceKernel& kernel, std::int64_
   return past;
 }
 
+void add_released(std::span<const float> past, double share, std::span<double> electrons) {
+  for (std::size_t i = 0; i < electrons.size(); ++i) electrons[i] += share * static_cast<double>(past[i]);
+}
+
+void take_trapped(double share, Electrons full_well, std::span<double> electrons) {
+  for (double& e : electrons) e -= share * std::min(e, full_well.value());
+}
+
 }  // namespace astroid

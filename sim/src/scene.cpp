@@ -167,7 +167,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   repointing_ = repointing_error(satellite, mission_.simulation, attitude_stream(mission_, RepointingEffect::kSpec.id));
   trend_ = drift_ + repointing_;
   attitude_ = make_drifting_attitude(jitter_, trend_, mission_.simulation);
-  if (mission_.cmos.line_time.value() > 0.0) (void)gapless_attitude({.jitter = true});  // which a file may not cover
+  if (line_time(mission_).value() > 0.0) (void)gapless_attitude({.jitter = true});  // which a file may not cover
   bad_pixels_ = read_bad_pixels(mission_);
   const CameraPointing pointing = make_pointing(mission_);
   projection_.emplace(pointing);

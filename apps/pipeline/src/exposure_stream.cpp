@@ -90,7 +90,8 @@ std::unique_ptr<LightCurveWriter> open_light_curves(std::span<const StreamGroup>
                           .start_mjd = mission.simulation.start_mjd,
                           .cycle = mission.simulation.cycle.value(),
                           .exposure_time = mission.simulation.exposure_time.value(),
-                          .history = history_of(*groups.front().plan, scene)};
+                          .history = history_of(*groups.front().plan, scene),
+                          .line_time = line_time(mission).value()};
   for (const std::size_t group : group_of) {
     header.group.push_back(static_cast<int>(group));
     header.stagger.push_back(groups[group].scene->mission().simulation.stagger.value());

@@ -30,14 +30,10 @@ void Persistence::prepare(CameraState& camera, const PrepareContext& context) co
 }
 
 void Persistence::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  const double taken = context.camera.cmos.persistence->taken();
-  const double full_well = context.scene.mission().ccd.full_well.value();
   const std::span<double> expected = state.expected.pixels(strip);
-  for (const PastImage& past : state.past) {
-    const std::span<const float> electrons = past.electrons->pixels().subspan(strip.begin, strip.size());
-    for (std::size_t i = 0; i < expected.size(); ++i) expected[i] += past.share * static_cast<double>(electrons[i]);
-  }
-  for (double& electrons : expected) electrons -= taken * std::min(electrons, full_well);
+  for (const PastImage& past : state.past)
+    add_released(past.electrons->pixels().subspan(strip.begin, strip.size()), past.share, expected);
+  take_trapped(context.camera.cmos.persistence->taken(), context.scene.mission().ccd.full_well, expected);
 }
 
 }  // namespace astroid

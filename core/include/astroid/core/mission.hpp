@@ -34,4 +34,9 @@ inline Seconds quarter_start(const Mission& mission) {
   return Seconds(static_cast<double>(mission.simulation.quarter) * mission.satellite.quarter_days * kSecondsPerDay);
 }
 
+/// By which a row is exposed later than the one below it: of a CMOS detector with a rolling shutter.
+inline Seconds line_time(const Mission& mission) {
+  return mission.simulation.type == DetectorType::kCmos ? mission.cmos.line_time : Seconds(0.0);
+}
+
 }  // namespace astroid

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "astroid/core/mission.hpp"
@@ -44,5 +45,11 @@ struct PastCharge {
 /// @param quarter  exposures of a quarter, in which a block ends; 0: there are none.
 std::vector<PastCharge> past_charge(const PersistenceKernel& kernel, std::int64_t exposure, std::int64_t block,
                                     double quarter);
+
+/// What is released in an exposure: adds `share` of the electrons of an earlier one.
+void add_released(std::span<const float> past, double share, std::span<double> electrons);
+
+/// What an exposure does not show: takes `share` of the electrons of each pixel, of no more than the full well.
+void take_trapped(double share, Electrons full_well, std::span<double> electrons);
 
 }  // namespace astroid
