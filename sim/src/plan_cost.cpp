@@ -70,7 +70,7 @@ constexpr double kDeposit = 3500.0;  ///< ns a star, once for each tile that it 
 constexpr double kMapCell = 15.0;    ///< ns a cell of the light
 /// Of persistence (bench: BM_Persistence): what each pixel gives, and what it takes from each image that is kept.
 constexpr double kTaking = 0.4;
-constexpr double kPastImage = 0.3;
+constexpr double kPastImage = 0.6;
 constexpr double kNanosecond = 1e-9;
 
 /// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are
