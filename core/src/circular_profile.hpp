@@ -15,6 +15,19 @@ struct CircularProfile {
   std::string name;
 };
 
+/// F54. @throws InputError naming everything that makes the PSF unusable, its wings included.
+CircularProfile moffat_profile(double fwhm, double beta, const PsfWings& wings);
+/// F55. @throws InputError likewise
+CircularProfile airy_profile(double lambda_over_d, double obscuration, const PsfWings& wings);
+
+/// The profile convolved with a Gaussian of rms `sigma` px: a spline through exact values out to `reach`.
+/// @accuracy  1e-9 of the peak (test: CircularSpectrum.OfDiffusedLightIsTheProduct)
+CircularProfile diffused(const CircularProfile& profile, double sigma, double reach);
+
+/// Light in a rectangle, px from the star, by composite Gauss-Legendre quadrature.
+/// @accuracy  1e-13 of the star's light
+double profile_flux(const CircularProfile& profile, PixelPosition lower, PixelPosition upper);
+
 /// Flux of every cell of a square of cells about the star, by Gauss-Legendre quadrature.
 ///
 /// The total is what falls into the square, not 1: 1 minus it is the light beyond.

@@ -101,6 +101,14 @@ SurfaceBrightness smooth_brightness(Density density) {
   return {std::move(density), {}, {}};
 }
 
+SurfaceBrightness cut_brightness(Density density, long double reach) {
+  const std::vector<long double> ends = {-reach, reach};
+  return {[density = std::move(density), reach](long double dx, long double dy) {
+            return std::abs(dx) < reach && std::abs(dy) < reach ? density(dx, dy) : 0.0L;
+          },
+          ends, ends};
+}
+
 SurfaceBrightness table_brightness(const PsfTable& table) {
   const auto nx = static_cast<std::size_t>(table.samples.nx());
   const auto ny = static_cast<std::size_t>(table.samples.ny());

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <complex>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/psf.hpp"
@@ -50,5 +52,34 @@ std::shared_ptr<const PsfSpectrum> make_gaussian_spectrum(double sigma);
 /// @accuracy  1e-13 (test: PsfSpectrum.OfATableIsTheFourierTransformOfItsSurfaceBrightness)
 /// @complexity  sample(): n_kx n_x n_y + n_kx n_ky n_y complex products for a table of n_x by n_y samples
 std::shared_ptr<const PsfSpectrum> make_table_spectrum(const PsfTable& table);
+
+/// Moffat's profile out to the reach of its wings, as make_moffat_psf() has it: the cosine transform of the light in
+/// the square, charge diffusion included, by Gauss-Legendre quadrature as fine as the frequencies ask for.
+///
+/// What is farther than the reach is left out, so light ends in a step there. Its spectrum falls as 1/k, and
+/// error_beyond(), which is measured as for a table, with it: by step × width / (pi² band) of a square at the border.
+/// Where steps are 1e-7 per px² and less, as with wings that are cut far out, that is no limit.
+/// @accuracy  1e-12, 1e-8 with diffusion (tests: CircularSpectrum.OfAMoffatProfileIsABesselFunction,
+///            CircularSpectrum.OfDiffusedLightIsTheProduct)
+/// @complexity  sample(): n_kx n² + n_kx n_ky n products, n = 4 reach × (largest k)
+/// @throws InputError as make_moffat_psf()
+std::shared_ptr<const PsfSpectrum> make_moffat_spectrum(double fwhm, double beta, const PsfWings& wings);
+
+/// The same for the diffraction pattern of make_airy_psf(). Without the cut it would end at 1 / (lambda/D).
+/// @accuracy  1e-12 (test: CircularSpectrum.IsTheFourierTransformOfTheLightInTheSquare)
+std::shared_ptr<const PsfSpectrum> make_airy_spectrum(double lambda_over_d, double obscuration, const PsfWings& wings);
+
+/// A PSF that varies over the field, in Fourier space: the light of a star is a sum over members with weights that
+/// belong to its place.
+struct FieldSpectrum {
+  std::vector<std::shared_ptr<const PsfSpectrum>> members;
+  /// Weights of the members at a place; their sum is 1.
+  std::function<void(PixelPosition, std::span<double>)> weights;
+  double amplification = 1.0;  ///< largest sum of the weights' absolute values: what errors of the members become
+};
+
+/// The PSF that make_field_psf() makes: every star has exactly the blend of its own place.
+/// @throws InputError as make_field_psf()
+FieldSpectrum make_field_spectrum(std::span<const FieldPsfTable> tables, Pixels diffusion);
 
 }  // namespace astroid
