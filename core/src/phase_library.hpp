@@ -40,8 +40,8 @@ class PhaseLibrary {
   };
   /// The pixels of the library but those at the border of the table, where its light may end in a step.
   [[nodiscard]] Rectangle interior() const;
-  /// Largest error of the light in squares of 2 and 3 px, relative to that light, wherever they lie in the star's image:
-  /// about the star, or in its wings where a fainter star may be. Of stars midway between the phases, where the
+  /// Largest error of the light in squares of 2 and 3 px, relative to that light, wherever they lie in the star's
+  /// image: about the star, or in its wings where a fainter star may be. Of stars midway between the phases, where the
   /// interpolation is at its worst.
   [[nodiscard]] double measured_error(const FluxSpline& spline, const Judged& judged) const;
 

@@ -88,9 +88,9 @@ CircularProfile airy_profile(double lambda_over_d, double obscuration, const Psf
 }
 
 CircularProfile diffused(const CircularProfile& profile, double sigma, double reach) {
-  constexpr double kReach = 8.5;      // sigmas, beyond which a Gaussian has 1e-16
+  constexpr double kReach = 8.5;       // sigmas, beyond which a Gaussian has 1e-16
   constexpr double kPerScale = 128.0;  // nodes of the spline; their distance to the fourth power is what it errs
-  constexpr int kMirrored = 32;       // nodes beyond the centre, by which the natural end of the spline is forgotten
+  constexpr int kMirrored = 32;        // nodes beyond the centre, by which the natural end of the spline is forgotten
   const double scale = std::sqrt(profile.scale * profile.scale + sigma * sigma);
   const double step = std::max(profile.scale, sigma) / kPerScale;
   const int count = static_cast<int>(std::ceil(reach * std::sqrt(2.0) / step)) + kMirrored;
@@ -113,11 +113,10 @@ CircularProfile diffused(const CircularProfile& profile, double sigma, double re
   }
   for (int i = 1; i <= kMirrored; ++i)
     density[static_cast<std::size_t>(kMirrored - i)] = density[static_cast<std::size_t>(kMirrored + i)];
-  return {.density = [spline = std::make_shared<const Spline>(r, density)](double r2) {
-            return spline->at(det::sqrt(r2));
-          },
-          .scale = scale,
-          .name = fmt::format("{}, diffused by {} px", profile.name, sigma)};
+  return {
+      .density = [spline = std::make_shared<const Spline>(r, density)](double r2) { return spline->at(det::sqrt(r2)); },
+      .scale = scale,
+      .name = fmt::format("{}, diffused by {} px", profile.name, sigma)};
 }
 
 double profile_flux(const CircularProfile& profile, PixelPosition lower, PixelPosition upper) {
@@ -126,8 +125,7 @@ double profile_flux(const CircularProfile& profile, PixelPosition lower, PixelPo
   double sum = 0.0;
   for (const QuadratureNode& y : along_y) {
     double line = 0.0;
-    for (const QuadratureNode& x : along_x)
-      line += x.weight * profile.density(x.place * x.place + y.place * y.place);
+    for (const QuadratureNode& x : along_x) line += x.weight * profile.density(x.place * x.place + y.place * y.place);
     sum += y.weight * line;
   }
   return sum;

@@ -111,8 +111,7 @@ class FieldPsf final : public PixelPsf {
 }  // namespace
 
 std::shared_ptr<const PixelPsf> make_field_psf(std::span<const FieldPsfTable> tables, Pixels diffusion,
-                                               const PsfAccuracy& accuracy, int phases,
-                                               const PixelResponse& response) {
+                                               const PsfAccuracy& accuracy, int phases, const PixelResponse& response) {
   detail::require_field(tables);
   std::vector<PixelPosition> nodes;
   std::vector<std::shared_ptr<const PixelPsf>> members;

@@ -140,17 +140,18 @@ class ProfilePsf final : public PixelPsf {
   [[nodiscard]] std::string description() const override {
     const double beyond = 1.0 - (wings_ ? *wings_ : core_).enclosed;
     return fmt::format(
-        "{}, {:.2g} of the light beyond {} px left out{}; library of {} x {} phases, aperture flux within {:.2g}", name_,
-        beyond, reach_, depth_ > 0.0 ? ", weighted with the response within the pixel" : "", core_.library.phases(), core_.library.phases(), approximation_error());
+        "{}, {:.2g} of the light beyond {} px left out{}; library of {} x {} phases, aperture flux within {:.2g}",
+        name_, beyond, reach_, depth_ > 0.0 ? ", weighted with the response within the pixel" : "",
+        core_.library.phases(), core_.library.phases(), approximation_error());
   }
 
  private:
   /// Of the pixels that are taken from the core.
   static double core_error(const ScaledLibrary& core, int reach, double least) {
-    return core.library.measured_error(
-        core.spline, {.least = least / core.enclosed,
-                      .outer = reach > kCore ? core_box({0.5, 0.5}) : core.library.interior(),
-                      .hole = {}});
+    return core.library.measured_error(core.spline,
+                                       {.least = least / core.enclosed,
+                                        .outer = reach > kCore ? core_box({0.5, 0.5}) : core.library.interior(),
+                                        .hole = {}});
   }
 
   static ScaledLibrary make_core(const detail::CircularProfile& profile, const PsfWings& wings,
@@ -162,8 +163,7 @@ class ProfilePsf final : public PixelPsf {
     constexpr double kSplineShare = 0.1;
     constexpr double kSigma = 0.85;
     const double width = det::hypot(kSigma * profile.scale, wings.diffusion);
-    const double per_sigma =
-        det::sqrt(det::sqrt(kSplineError * response.depth() / (kSplineShare * accuracy.relative)));
+    const double per_sigma = det::sqrt(det::sqrt(kSplineError * response.depth() / (kSplineShare * accuracy.relative)));
     const int samples = static_cast<int>(std::ceil(per_sigma / width));
     const auto make = [&](int n) {
       return ScaledLibrary::make(profile, wings.diffusion, half_width, n, response, samples);

@@ -113,8 +113,9 @@ std::shared_ptr<const PixelPsf> make_recorded_psf(const Mission& mission, const 
   if (!response && !(gaussian && choose_renderer(mission).renderer == Renderer::kPrf)) return optical;
   const PixelResponse common = response ? common_response(mission.psf.intra_pixel) : PixelResponse{};
   if (!gaussian) return make_psf(mission, accuracy, common);
-  return make_prf_psf(make_gaussian_table(gaussian_sigma(mission), kSplineShare * accuracy.relative * accuracy.least_light), accuracy,
-                      mission.psf.phases, common);
+  return make_prf_psf(
+      make_gaussian_table(gaussian_sigma(mission), kSplineShare * accuracy.relative * accuracy.least_light), accuracy,
+      mission.psf.phases, common);
 }
 
 std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& mission, double accuracy, double tight) {
@@ -122,8 +123,8 @@ std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& m
   const SubPixelSettings settings{.accuracy = gaussian ? std::min(accuracy, tight) : accuracy,
                                   .sub_pixels = mission.simulation.sub_pixels,
                                   .cells = has_intra_pixel_response(mission) ? mission.psf.intra_pixel.cells : 1};
-  return std::make_shared<const SubPixelRenderer>(
-      spectrum_of(mission), Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
+  return std::make_shared<const SubPixelRenderer>(spectrum_of(mission),
+                                                  Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
 }
 
 }  // namespace astroid

@@ -139,8 +139,8 @@ double peak_pixel_bound(std::span<const SceneStar> stars, double peak_fraction) 
 /// Of the faintest target, the wings of so many of the brightest star are thought to reach.
 constexpr double kNeighbours = 4.0;
 
-/// What the PSF may err: by the share of the accuracy that is its own, of the light in an aperture, which is that of the
-/// faintest target where the wings of brighter stars are less.
+/// What the PSF may err: by the share of the accuracy that is its own, of the light in an aperture, which is that of
+/// the faintest target where the wings of brighter stars are less.
 PsfAccuracy psf_accuracy_of(const SceneSummary& s) {
   // Stars more than so much brighter are taken as this much brighter.
   constexpr double kFaintest = 1e-3;
@@ -165,9 +165,7 @@ std::vector<std::size_t> full_frame_targets(const Scene& scene) {
 }
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
-    : mission_(mission),
-      renderer_(choose_renderer(mission)),
-      jitter_(make_jitter(mission)) {
+    : mission_(mission), renderer_(choose_renderer(mission)), jitter_(make_jitter(mission)) {
   const CcdSettings& ccd = mission_.ccd;
   const SatelliteSettings& satellite = mission_.satellite;
   drift_ = thermo_elastic_drift(satellite, mission_.simulation, attitude_stream(mission_, DriftEffect::kSpec.id));

@@ -65,9 +65,9 @@ int budget(const BudgetOptions& options) {
   const auto steps = static_cast<int>(std::floor((options.mag_to - options.mag_from) / options.mag_step + 1e-9));
   for (int i = 0; i <= steps; ++i) magnitudes.push_back(options.mag_from + i * options.mag_step);
   const PsfAccuracy accuracy(1e-6 * mission.simulation.accuracy.value());
-  const std::vector<BudgetRow> rows = analytic_budget(
-      mission, *imaged_psf(mission, make_recorded_psf(mission, accuracy, make_psf(mission, accuracy))), magnitudes,
-      neighbours);
+  const std::vector<BudgetRow> rows =
+      analytic_budget(mission, *imaged_psf(mission, make_recorded_psf(mission, accuracy, make_psf(mission, accuracy))),
+                      magnitudes, neighbours);
 
   fmt::print("{} at the centre of a pixel; noise in {:g} h with {} camera(s), ppm\n\n",
              neighbours.empty() ? "Isolated star" : "Star with neighbours", mission.analysis.bin.value() / 3600.0,

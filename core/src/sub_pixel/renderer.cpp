@@ -135,8 +135,8 @@ struct SubPixelRenderer::Design {
   detail::DepositKernel kernel;
   detail::FourierTransform map_transform;
   detail::FourierTransform cell_transform;
-  std::vector<double> kx;  // 0 … band
-  std::vector<double> ky;  // -band … band
+  std::vector<double> kx;                      // 0 … band
+  std::vector<double> ky;                      // -band … band
   std::vector<std::vector<Complex>> transfer;  // of each member of the PSF
 };
 
@@ -352,8 +352,7 @@ std::string SubPixelRenderer::description() const {
   return fmt::format(
       "{} on a map of {} x {} sub-pixels per pixel, convolved up to {:.3g} cycles/px in {} tiles of {} x {} px; "
       "flux in any square within {:.2g} of the star's",
-      describe(d.psf), d.sub_pixels, d.sub_pixels, d.band, d.grid.tiles.size(), d.grid.tile_x, d.grid.tile_y,
-      d.error);
+      describe(d.psf), d.sub_pixels, d.sub_pixels, d.band, d.grid.tiles.size(), d.grid.tile_x, d.grid.tile_y, d.error);
 }
 
 }  // namespace astroid

@@ -78,9 +78,8 @@ class TableSpectrum final : public PsfSpectrum {
       for (std::size_t i = 0; i < nx_; ++i)
         differences_[j * nx_ + i] =
             (c[(j + 1) * stride + i + 1] - c[(j + 1) * stride + i]) - (c[j * stride + i + 1] - c[j * stride + i]);
-    band_error_.emplace(spline_.lower(), spline_.upper(), [this](PixelPosition lower, PixelPosition upper) {
-      return spline_.flux(lower, upper);
-    });
+    band_error_.emplace(spline_.lower(), spline_.upper(),
+                        [this](PixelPosition lower, PixelPosition upper) { return spline_.flux(lower, upper); });
   }
 
   void sample(std::span<const double> kx, std::span<const double> ky, std::span<Complex> values) const override {

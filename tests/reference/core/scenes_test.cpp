@@ -124,7 +124,7 @@ Optics field(double samples_per_pixel, double accuracy) {
   tables.push_back({{0.0, 0.0}, made_up_table(0.6, samples_per_pixel)});
   tables.push_back({{32.0, 0.0}, made_up_table(0.7, samples_per_pixel)});
   tables.push_back({{0.0, 32.0}, made_up_table(0.8, samples_per_pixel)});
-  Optics optics{"field", {}, make_field_psf(tables, Pixels(0.0), accuracy), make_field_spectrum(tables, Pixels(0.0)),
+  Optics optics{"field", {},    make_field_psf(tables, Pixels(0.0), accuracy), make_field_spectrum(tables, Pixels(0.0)),
                 0.0,     {1, 3}};
   for (const FieldPsfTable& table : tables) {
     optics.brightness.push_back(test::table_brightness(table.table));
