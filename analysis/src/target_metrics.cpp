@@ -49,7 +49,28 @@ double NoiseByCause::of_levels() const {
   return std::hypot(std::hypot(background, background_estimate), std::hypot(smearing, bias));
 }
 
+MotionNoise motion_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup) {
+  // The estimator's gradient is that of the whole flux in the aperture; the noise is relative to the target's part.
+  const double whole = 1.0 / (1.0 - estimator.spr_total);
+  const double gx = estimator.gradient_x * whole;
+  const double gy = estimator.gradient_y * whole;
+  MotionNoise out;
+  out.jitter_camera = out.jitter_exposure = motion.exposure.along(gx, gy);
+  out.jitter_bin = motion.bin.along(gx, gy);
+  // Pixel gains are independent, so the two directions add in quadrature; their correlation through the covariance of
+  // the motion is small for any compact PSF and left out.
+  const double px = square(setup.prnu * estimator.prnu_gradient_x);
+  const double py = square(setup.prnu * estimator.prnu_gradient_y);
+  out.prnu_exposure = px * motion.exposure.sxx + py * motion.exposure.syy;
+  out.prnu_bin = px * motion.bin.sxx + py * motion.bin.syy;
+  return out;
+}
+
 PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup) {
+  return predict_mean_noise(estimator, motion_noise(estimator, motion, setup), setup);
+}
+
+PredictedNoise predict_mean_noise(const StarEstimator& estimator, const MotionNoise& motion, const RunSetup& setup) {
   const EstimatorBudget& budget = estimator.budget;
   const double n = setup.exposures_per_bin;
   const double cameras = setup.cameras;
@@ -70,34 +91,23 @@ PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& m
   out.bin.smearing = std::sqrt(budget.var_smearing + budget.var_smearing_correction) * ppm;
   out.bin.bias = std::sqrt(budget.var_bias) * ppm;
 
-  // The estimator's gradient is that of the whole flux in the aperture; the noise is relative to the target's part.
-  const double whole = 1.0 / (1.0 - estimator.spr_total);
-  const double gx = estimator.gradient_x * whole;
-  const double gy = estimator.gradient_y * whole;
-  const double jitter_exposure = motion.exposure.along(gx, gy);
-  const double jitter_bin = motion.bin.along(gx, gy);
-  // Pixel gains are independent, so the two directions add in quadrature; their correlation through the covariance of
-  // the motion is small for any compact PSF and left out.
-  const double px = square(setup.prnu * estimator.prnu_gradient_x);
-  const double py = square(setup.prnu * estimator.prnu_gradient_y);
-  const double prnu_exposure = px * motion.exposure.sxx + py * motion.exposure.syy;
-  const double prnu_bin = px * motion.bin.sxx + py * motion.bin.syy;
-  out.bin.jitter = kPpm * std::sqrt(jitter_bin);
-  out.bin.prnu_jitter = kPpm * std::sqrt(prnu_bin / cameras);
+  out.bin.jitter = kPpm * std::sqrt(motion.jitter_bin);
+  out.bin.prnu_jitter = kPpm * std::sqrt(motion.prnu_bin / cameras);
 
   // A sinusoid of amplitude a has the variance a²/2. It is the same in all cameras and, slower than a bin, does not
   // average out.
+  const double whole = 1.0 / (1.0 - estimator.spr_total);
   const double drift =
       0.5 * (square(setup.gain_drift * whole) + square(setup.bias_drift * budget.bias_weight / budget.target));
   out.bin.drift = kPpm * std::sqrt(drift);
   const double independent = budget.variance() / square(budget.target);
-  out.exposure = std::sqrt(independent + jitter_exposure + prnu_exposure + drift);
+  out.exposure = std::sqrt(independent + motion.jitter_camera + motion.prnu_exposure + drift);
   out.bin_common = std::hypot(out.bin.jitter, out.bin.drift);
-  out.bin_simulated = kPpm * std::sqrt((independent / n + prnu_bin) / simulated + jitter_bin + drift);
+  out.bin_simulated = kPpm * std::sqrt((independent / n + motion.prnu_bin) / simulated + motion.jitter_bin + drift);
   // Within a bin the variance is what the mean of the bin has not taken; n / (n - 1) as the estimator divides by n - 1.
   const double bessel = n > 1.0 ? n / (n - 1.0) : 1.0;
-  const double shared = bessel * std::max(0.0, jitter_exposure - jitter_bin);
-  const double own = independent + bessel * std::max(0.0, prnu_exposure - prnu_bin);
+  const double shared = bessel * std::max(0.0, motion.jitter_exposure - motion.jitter_bin);
+  const double own = independent + bessel * std::max(0.0, motion.prnu_exposure - motion.prnu_bin);
   out.bin_within = kPpm * std::sqrt((own / simulated + shared) / n);
   out.bin_within_common = kPpm * std::sqrt(shared / n);
   return out;
@@ -105,6 +115,11 @@ PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& m
 
 TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estimator, const StarMotion& motion,
                              const RunSetup& setup) {
+  return predict_mean_target(truth, estimator, predict_noise(estimator, motion, setup), setup);
+}
+
+TargetMetrics predict_mean_target(const TruthStar& truth, const StarEstimator& estimator, const PredictedNoise& noise,
+                                  const RunSetup& setup) {
   TargetMetrics target;
   target.id = truth.id;
   target.mag = truth.magnitude;
@@ -114,7 +129,7 @@ TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estima
   target.mask_pixels = estimator.mask_pixels;
   target.enclosed_fraction = estimator.enclosed_fraction;
   target.flags = estimator.flags;
-  target.predicted = predict_noise(estimator, motion, setup);
+  target.predicted = noise;
   target.nsr_exposure = target.predicted.exposure;
   target.nsr_1h_ppm = target.predicted.bin.total();
   target.spr_tot = estimator.spr_total;

@@ -107,16 +107,18 @@ int run_command_line(int argc, char** argv) {
       ->type_name("PX")
       ->check(CLI::Range(8, 100000))
       ->capture_default_str();
+  sub->add_option("--group", focal_plane_options.group, "of cameras, where the mission has several")
+      ->capture_default_str();
   sub->add_option("--magnitude", focal_plane_options.magnitude, "of the star that is mapped (default: targets' median)")
       ->type_name("MAG");
   sub->callback([&] { command = [&] { return focal_plane(focal_plane_options); }; });
 
   PhotometryOptions photometry_options;
-  sub = app.add_subcommand("photometry", "fluxes of catalogue positions from any FITS images");
+  sub = app.add_subcommand("photometry", "fluxes of stars in any FITS images, found there or given by a catalogue");
   sub->add_option("IMAGE", photometry_options.images, "FITS images")->required();
   sub->add_option("--catalogue", photometry_options.catalogue,
-                  "positions: a catalogue with ra,dec (the image needs a WCS) or x,y")
-      ->required()
+                  "positions: a catalogue with ra,dec (the image needs a WCS) or x,y; without it stars are found and "
+                  "fitted together, which needs --method psf and --psf")
       ->type_name("FILE");
   sub->add_option("--method", photometry_options.method,
                   "aperture, mask (optimal binary), weighted, or psf (neighbours fitted too)")

@@ -8,11 +8,13 @@
 #include <limits>
 
 #include "astroid/catalogues/passbands.hpp"
+#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/ecliptic.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/run_time.hpp"
 #include "astroid/core/sphere.hpp"
 #include "astroid/core/throughput.hpp"
 
@@ -127,14 +129,9 @@ ElectronsPerSecond sky_rate(const Mission& mission, ElectronsPerSecond rate, Sky
   return (zodiacal_light(direction, mjd).value + stars) * rate;
 }
 
-Seconds middle_of_run(const SimulationSettings& simulation) {
-  return Seconds(0.5 * (static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() +
-                        simulation.exposure_time.value()));
-}
-
 ElectronsPerSecond mean_background_rate(const Mission& mission) {
   const bool constant = mission.field.sky == SkyModel::kConstant;
-  const SkyPosition axis{mission.satellite.ra.value(), mission.satellite.dec.value()};
+  const SkyPosition axis = camera_boresight(mission).axis;
   const ElectronsPerSecond sky = sky_rate(mission, constant ? ElectronsPerSecond(0.0) : rate_of_one_s10(mission), axis,
                                           middle_of_run(mission.simulation));
   return mean_throughput(mission) * (sky + mission.field.stray_light.level);

@@ -24,15 +24,8 @@ struct Frame {
 };
 
 Frame frame_at(SkyPosition centre) {
-  const SineCosine ra = sine_cosine(Degrees(centre.ra));
-  const SineCosine dec = sine_cosine(Degrees(centre.dec));
-  return {.outward = {dec.cosine * ra.cosine, dec.cosine * ra.sine, dec.sine},
-          .east = {-ra.sine, ra.cosine, 0.0},
-          .north = {-dec.sine * ra.cosine, -dec.sine * ra.sine, dec.cosine}};
-}
-
-double dot(const Direction& a, const Direction& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
+  const auto [east, north] = horizon(centre);
+  return {.outward = to_direction(centre), .east = east, .north = north};
 }
 
 /// Components towards the outward, east and north vectors of `frame` as a direction of the sky.

@@ -20,9 +20,12 @@ CircularProfile moffat_profile(double fwhm, double beta, const PsfWings& wings);
 /// F55. @throws InputError likewise
 CircularProfile airy_profile(double lambda_over_d, double obscuration, const PsfWings& wings);
 
-/// The profile convolved with a Gaussian of rms `sigma` px: a spline through exact values out to `reach`.
-/// @accuracy  1e-9 of the peak (test: CircularSpectrum.OfDiffusedLightIsTheProduct)
-CircularProfile diffused(const CircularProfile& profile, double sigma, double reach);
+/// What of a profile is imaged: diffused, and faded out towards the reach (F120) so that light ends in no step, which
+/// neither a map of sub-pixels nor a library of phases could hold. 0 beyond the reach.
+/// @accuracy  1e-13 of the peak (tests: CircularSpectrum.OfDiffusedLightIsTheProduct,
+/// CircularSpectrum.IsTheFourierTransformOfTheFadedLight)
+/// @complexity  quick to evaluate, whatever the profile (RadialTable)
+CircularProfile as_imaged(const CircularProfile& profile, const PsfWings& wings);
 
 /// Light in a rectangle, px from the star, by composite Gauss-Legendre quadrature.
 /// @accuracy  1e-13 of the star's light

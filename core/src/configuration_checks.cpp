@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/response.hpp"
 #include "configuration_draft.hpp"
 
@@ -185,6 +187,38 @@ void check_optics(const Mission& m, Checker& checker) {
                   "the name of a readable file, since the model is field");
 }
 
+void check_groups(const Mission& m, Checker& checker) {
+  constexpr std::string_view kCameras = "Telescope/Groups/Cameras";
+  const CameraGroups& groups = m.telescope.groups;
+  const std::size_t count = groups.cameras.size();
+  const auto check_list = [&](const std::vector<double>& list, std::string_view path) {
+    checker.require(list.empty() || list.size() == count, path, kCameras,
+                    fmt::format("has {} values for {} groups", list.size(), count),
+                    count == 0 ? "nothing, or the cameras of each group in Telescope/Groups/Cameras"
+                               : fmt::format("{}, one for each group, or none", count));
+  };
+  check_list(groups.tilt, "Telescope/Groups/Tilt");
+  check_list(groups.azimuth, "Telescope/Groups/Azimuth");
+  check_list(groups.roll, "Telescope/Groups/Roll");
+  check_list(groups.stagger, "Telescope/Groups/Stagger");
+  check_list(groups.offset_x, "Telescope/Groups/OffsetX");
+  check_list(groups.offset_y, "Telescope/Groups/OffsetY");
+  check_list(groups.throughput, "Telescope/Groups/Throughput");
+  check_list(groups.end_of_life, "Telescope/Groups/EndOfLife");
+  for (const double stagger : groups.stagger)
+    checker.require(stagger < m.simulation.cycle.value(), "Telescope/Groups/Stagger", "Simulation/Cycle",
+                    fmt::format("{} s is a cycle or more", stagger),
+                    fmt::format("less than Cycle ({} s)", m.simulation.cycle.value()));
+  if (count == 0) return;
+  const int cameras = std::accumulate(groups.cameras.begin(), groups.cameras.end(), 0);
+  checker.require(m.telescope.cameras == cameras, "Telescope/Cameras", kCameras, "is not the sum of the groups",
+                  fmt::format("{}, as Telescope/Groups/Cameras has", cameras));
+  const int turn = cameras_in_turn(m.telescope);
+  checker.require(m.telescope.simulated_cameras % turn == 0, "Telescope/SimulatedCameras", kCameras,
+                  "does not hold the same share of every group",
+                  fmt::format("a multiple of {}, up to {}", turn, cameras));
+}
+
 }  // namespace
 
 void check_together(const Mission& mission, Draft& draft) {
@@ -197,6 +231,7 @@ void check_together(const Mission& mission, Draft& draft) {
   check_calibration(mission, checker);
   check_photometry(mission, checker);
   check_optics(mission, checker);
+  check_groups(mission, checker);
   checker.require(mission.telescope.simulated_cameras <= mission.telescope.cameras, "Telescope/SimulatedCameras",
                   "Telescope/Cameras", "more than there are",
                   fmt::format("at most Cameras ({})", mission.telescope.cameras));

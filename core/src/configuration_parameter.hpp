@@ -95,6 +95,7 @@ std::vector<Parameter> simulation_parameters();
 std::vector<Parameter> satellite_parameters();
 std::vector<Parameter> motion_parameters();
 std::vector<Parameter> telescope_parameters();
+std::vector<Parameter> group_parameters();
 std::vector<Parameter> optics_parameters();
 std::vector<Parameter> renderer_parameters();
 std::vector<Parameter> psf_parameters();

@@ -21,6 +21,10 @@ constexpr std::array kSections = {
     Section{"Satellite/Drift", "Slow motion of the line of sight."},
     Section{"Satellite/Repointing", "Errors of pointing the spacecraft anew each quarter."},
     Section{"Telescope", "How much light reaches the detector, and in how many cameras."},
+    Section{
+        "Telescope/Groups",
+        "Groups of cameras with an optical axis, a time, a pixel phase and a throughput of their own; they share the "
+        "attitude. Each list has one value for each group."},
     Section{"Telescope/Ageing", "How the optics lose throughput over the years."},
     Section{"Telescope/Distortion", "How positions depart from those of a perfect camera."},
     Section{"Telescope/Vignetting", "How stars, sky and stray light fade away from the optical axis."},
@@ -58,9 +62,9 @@ std::vector<Parameter> whole_table() {
   std::vector<Parameter> table;
   for (auto part :
        {simulation_parameters, renderer_parameters, satellite_parameters, motion_parameters, telescope_parameters,
-        optics_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters, sky_parameters,
-        ccd_parameters, pixel_effect_parameters, readout_parameters, cmos_parameters, photometry_parameters,
-        analysis_parameters, output_parameters}) {
+        group_parameters, optics_parameters, psf_parameters, intra_pixel_parameters, stellar_field_parameters,
+        sky_parameters, ccd_parameters, pixel_effect_parameters, readout_parameters, cmos_parameters,
+        photometry_parameters, analysis_parameters, output_parameters}) {
     for (Parameter& parameter : part()) table.push_back(std::move(parameter));
   }
   return table;

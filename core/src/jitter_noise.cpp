@@ -70,14 +70,45 @@ double prnu_static_noise(double prnu, std::span<const double> fractions) {
 double ou_mean_rms(double rms, Seconds tau, const Cadence& cadence) {
   const double duration = cadence.exposure_time / tau;
   const double step = cadence.cycle / tau;
-  const double covariance = averaged_covariance(duration);
+  // Of motion much faster than an exposure the hyperbolic sine would overflow; its decaying half is below 1e-43 there.
+  constexpr double kFast = 100.0;
+  const bool fast = duration > kFast;
+  const double covariance = fast ? 1.0 / (duration * duration) : averaged_covariance(duration);
+  const double between = fast ? duration : 0.0;  // from here distances count from the end of an exposure
   const auto n = static_cast<double>(cadence.exposures);
   double sum = 0.0;
   for (long k = cadence.exposures - 1; k > 0; --k) {
     const auto lag = static_cast<double>(k);
-    sum += (n - lag) * det::exp(-lag * step);  // smallest first
+    sum += (n - lag) * det::exp(between - lag * step);  // smallest first
   }
   return rms * std::sqrt((averaged_variance(duration) + 2.0 * covariance * sum / n) / n);
+}
+
+double ou_mean_covariance(Seconds tau, const Cadence& cadence, Seconds lag) {
+  if (lag.value() == 0.0) {
+    const double rms = ou_mean_rms(1.0, tau, cadence);
+    return rms * rms;
+  }
+  const double duration = cadence.exposure_time / tau;
+  const auto n = static_cast<double>(cadence.exposures);
+  const double decayed = duration > 0.0 ? -det::expm1(-duration) / duration : 1.0;
+  // h(t) - 1 without cancellation.
+  const auto bend = [](double t) { return 0.5 * t * t * averaged_variance(t); };
+  const auto covariance = [&](double distance) {
+    if (distance >= duration) {
+      const double root = decayed * det::exp(-0.5 * (distance - duration));
+      return root * root;
+    }
+    return (bend(duration + distance) - 2.0 * bend(distance) + bend(duration - distance)) / (duration * duration);
+  };
+  double sum = 0.0;
+  for (long k = cadence.exposures - 1; k >= 0; --k) {  // smallest first
+    const double apart = static_cast<double>(k) * (cadence.cycle / tau);
+    const double weight = n - static_cast<double>(k);
+    sum += weight * covariance(std::fabs(apart + lag / tau));
+    if (k > 0) sum += weight * covariance(std::fabs(apart - lag / tau));
+  }
+  return sum / (n * n);
 }
 
 double flat_field_static_noise(double rms, double exponent, double share) {

@@ -46,23 +46,51 @@ std::vector<double> PhaseLibrary::exact_images(const FluxSpline& spline, std::sp
   const auto edge_at = [&](const Extent& e, std::size_t i, double shift) {
     return e.first + static_cast<double>(i) * cell - 0.5 - shift;
   };
+  const std::size_t x_count = nx * cells + 1;
   const std::size_t y_count = ny * cells + 1;
   std::vector<FluxSpline::Edge> y_edges(n * y_count);
   for (std::size_t q = 0; q < n; ++q) {
     for (std::size_t j = 0; j < y_count; ++j) y_edges[q * y_count + j] = spline.y_edge(edge_at(y_, j, shifts[q]));
   }
-  std::vector<double> rows(spline.coefficient_rows());
-  for (std::size_t p = 0; p < n; ++p) {
-    for (std::size_t i = 0; i < nx * cells; ++i) {
-      spline.integrate_rows(spline.x_edge(edge_at(x_, i, shifts[p])), spline.x_edge(edge_at(x_, i + 1, shifts[p])),
-                            rows);
-      for (std::size_t q = 0; q < n; ++q) {
-        const FluxSpline::Edge* edges = &y_edges[q * y_count];
-        double* column = &images[(q * n + p) * nx * ny + i / cells];
-        for (std::size_t j = 0; j < ny * cells; ++j) {
-          column[j / cells * nx] += response_.at(static_cast<int>(i % cells), static_cast<int>(j % cells)) *
-                                    FluxSpline::integrate_column(rows, edges[j], edges[j + 1]);
+  // Shifts along x in groups, whose edges share the cache lines of the coefficients.
+  constexpr std::size_t kMostInGroup = 8;
+  constexpr std::size_t kGroupBytes = 4UL * 1024UL * 1024UL;
+  const std::size_t group = std::clamp<std::size_t>(
+      kGroupBytes / (spline.coefficient_rows() * x_count * sizeof(double)), 1, kMostInGroup);
+  std::vector<FluxSpline::Edge> edges;
+  std::vector<double> rows;
+  std::vector<double> below;
+  std::vector<double> above;
+  for (std::size_t p0 = 0; p0 < n; p0 += group) {
+    const std::size_t p1 = std::min(p0 + group, n);
+    edges.clear();
+    for (std::size_t p = p0; p < p1; ++p)
+      for (std::size_t i = 0; i < x_count; ++i) edges.push_back(spline.x_edge(edge_at(x_, i, shifts[p])));
+    rows.resize(spline.coefficient_rows() * edges.size());
+    spline.at_edges(edges, rows);
+    below.resize(edges.size());
+    above.resize(edges.size());
+    // C along the line of an edge in y, at all edges in x.
+    const auto combine = [&](const FluxSpline::Edge& edge, std::vector<double>& line) {
+      const double* from = &rows[edge.first * edges.size()];
+      const std::size_t count = edges.size();
+      for (std::size_t e = 0; e < count; ++e)
+        line[e] = edge.weights[0] * from[e] + edge.weights[1] * from[e + count] +
+                  edge.weights[2] * from[e + 2 * count] + edge.weights[3] * from[e + 3 * count];
+    };
+    for (std::size_t q = 0; q < n; ++q) {
+      combine(y_edges[q * y_count], below);
+      for (std::size_t j = 0; j < ny * cells; ++j) {
+        combine(y_edges[q * y_count + j + 1], above);
+        for (std::size_t e = 0; e < edges.size(); ++e) below[e] = above[e] - below[e];
+        for (std::size_t p = p0; p < p1; ++p) {
+          const double* strip = &below[(p - p0) * x_count];
+          double* row = &images[((q * n + p) * ny + j / cells) * nx];
+          for (std::size_t i = 0; i < nx * cells; ++i)
+            row[i / cells] += response_.at(static_cast<int>(i % cells), static_cast<int>(j % cells)) *
+                              (strip[i + 1] - strip[i]);
         }
+        std::swap(below, above);
       }
     }
   }

@@ -13,7 +13,6 @@
 #include "flux_spline.hpp"
 #include "motion_nodes.hpp"
 #include "phase_library.hpp"
-#include "psf_diffusion.hpp"
 
 namespace astroid {
 
@@ -22,22 +21,9 @@ namespace {
 constexpr int kCore = 8;                  // px; farther out the light is so thin that a coarser library does
 constexpr int kFewestPhases = 4;          // where the search begins
 constexpr int kMostCorePhases = 128;      // 47 MB
-constexpr int kMostWingPhases = 32;       // 300 MB at a reach of 90 px
-constexpr double kDiffusionMargin = 6.5;  // sigmas of diffusion that a table is made wider by, before it is cut
+constexpr int kMostWingPhases = 64;       // of a library of at most
+constexpr double kMostWingBytes = 300e6;  // which leaves 32 phases at a reach of 90 px, and 64 at 43 px
 constexpr std::size_t kMostCorePixels = 4UL * kCore * kCore;
-
-/// The middle (2 half_width)² px of a table.
-PsfTable cropped(const PsfTable& table, int half_width) {
-  const int half = static_cast<int>(table.samples_per_pixel) * half_width;
-  const int margin = table.samples.nx() / 2 - half;
-  PsfTable part;
-  part.samples = Image<double, unit::Relative>(2 * half, 2 * half);
-  part.samples_per_pixel = table.samples_per_pixel;
-  part.centre_x = part.centre_y = half - 0.5;
-  for (int y = 0; y < 2 * half; ++y)
-    for (int x = 0; x < 2 * half; ++x) part.samples.at(x, y) = table.samples.at(x + margin, y + margin);
-  return part;
-}
 
 /// A library of a profile out to a square, in fractions of all the star's light.
 struct ScaledLibrary {
@@ -45,15 +31,14 @@ struct ScaledLibrary {
   detail::FluxSpline spline;
   detail::PhaseLibrary library;
 
-  /// The edges of pixels of all phases, and of stars midway between them, are edges of the table's samples: there the
-  /// spline is exact.
+  /// The edges of pixels of all phases are edges of the table's samples: there the spline is exact. With two samples to
+  /// a phase it is so for stars midway between them, which errors are judged by.
   /// @param samples  per px at least: what the edges of cells within the pixel, which lie anywhere, ask for
-  static ScaledLibrary make(const detail::CircularProfile& profile, double diffusion, int half_width, int phases,
+  static ScaledLibrary make(const detail::CircularProfile& profile, int half_width, int phases, int per_phase,
                             const PixelResponse& response, int samples = 0) {
-    const int margin = static_cast<int>(std::ceil(kDiffusionMargin * diffusion));
-    const int parts = std::max(1, (samples + 2 * phases - 1) / (2 * phases));
-    PsfTable table = detail::flux_table(profile, 2 * phases * parts, half_width + margin);
-    if (diffusion > 0.0) table = cropped(detail::diffuse(table, diffusion, 1), half_width);
+    const int least = per_phase * phases;
+    const int parts = std::max(1, (samples + least - 1) / least);
+    const PsfTable table = detail::flux_table(profile, least * parts, half_width);
     double sum = 0.0;
     for (const double sample : table.samples.pixels()) sum += sample;
     detail::FluxSpline spline(table);
@@ -72,7 +57,7 @@ class ProfilePsf final : public PixelPsf {
         depth_(response.depth()),
         core_(make_core(profile, wings, accuracy, phases, response)) {
     core_error_ = core_error(core_, reach_, accuracy.least_light);
-    if (reach_ > kCore) make_wings(profile, wings.diffusion, accuracy, response);
+    if (reach_ > kCore) make_wings(profile, accuracy, response);
   }
 
   void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const override {
@@ -162,11 +147,11 @@ class ProfilePsf final : public PixelPsf {
     constexpr double kSplineError = 4e-3;
     constexpr double kSplineShare = 0.1;
     constexpr double kSigma = 0.85;
-    const double width = det::hypot(kSigma * profile.scale, wings.diffusion);
+    const double width = kSigma * profile.scale;
     const double per_sigma = det::sqrt(det::sqrt(kSplineError * response.depth() / (kSplineShare * accuracy.relative)));
     const int samples = static_cast<int>(std::ceil(per_sigma / width));
     const auto make = [&](int n) {
-      return ScaledLibrary::make(profile, wings.diffusion, half_width, n, response, samples);
+      return ScaledLibrary::make(profile, half_width, n, 2, response, samples);
     };
     if (phases > 0) return make(std::min(phases, kMostCorePhases));
     int n = kFewestPhases;
@@ -178,15 +163,20 @@ class ProfilePsf final : public PixelPsf {
     return core;
   }
 
-  void make_wings(const detail::CircularProfile& profile, double diffusion, const PsfAccuracy& accuracy,
+  void make_wings(const detail::CircularProfile& profile, const PsfAccuracy& accuracy,
                   const PixelResponse& response) {
+    const double pixels = 4.0 * reach_ * reach_;
     for (int n = kFewestPhases;; n *= 2) {
-      wings_.emplace(ScaledLibrary::make(profile, diffusion, reach_, n, response));
+      // Between the edges of samples the spline errs by a ninth of what four points between phases do, the same way.
+      constexpr double kSplinePart = 9.0 / 8.0;
+      wings_.emplace(ScaledLibrary::make(profile, reach_, n, 1, response));
       // Of a star midway between any phases the core has at least these pixels.
-      wing_error_ = wings_->library.measured_error(wings_->spline, {.least = accuracy.least_light / wings_->enclosed,
+      wing_error_ = kSplinePart *
+                    wings_->library.measured_error(wings_->spline, {.least = accuracy.least_light / wings_->enclosed,
                                                                     .outer = wings_->library.interior(),
                                                                     .hole = core_box({0.5, 0.5})});
-      if (wing_error_ <= accuracy.relative || 2 * n > kMostWingPhases) return;
+      const double next = sizeof(double) * pixels * 4.0 * n * n;
+      if (wing_error_ <= accuracy.relative || 2 * n > kMostWingPhases || next > kMostWingBytes) return;
     }
   }
 
@@ -254,13 +244,13 @@ class ProfilePsf final : public PixelPsf {
 std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings,
                                                 const PsfAccuracy& accuracy, int phases,
                                                 const PixelResponse& response) {
-  return std::make_shared<const ProfilePsf>(detail::moffat_profile(fwhm, beta, wings), wings, accuracy, phases,
+  return std::make_shared<const ProfilePsf>(detail::as_imaged(detail::moffat_profile(fwhm, beta, wings), wings), wings, accuracy, phases,
                                             response);
 }
 
 std::shared_ptr<const PixelPsf> make_airy_psf(double lambda_over_d, double obscuration, const PsfWings& wings,
                                               const PsfAccuracy& accuracy, int phases, const PixelResponse& response) {
-  return std::make_shared<const ProfilePsf>(detail::airy_profile(lambda_over_d, obscuration, wings), wings, accuracy,
+  return std::make_shared<const ProfilePsf>(detail::as_imaged(detail::airy_profile(lambda_over_d, obscuration, wings), wings), wings, accuracy,
                                             phases, response);
 }
 

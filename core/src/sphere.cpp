@@ -54,6 +54,12 @@ Direction to_direction(SkyPosition position) {
   return {dec.cosine * ra.cosine, dec.cosine * ra.sine, dec.sine};
 }
 
+Horizon horizon(SkyPosition place) {
+  const SineCosine ra = sine_cosine(Degrees(place.ra));
+  const SineCosine dec = sine_cosine(Degrees(place.dec));
+  return {.east = {-ra.sine, ra.cosine, 0.0}, .north = {-dec.sine * ra.cosine, -dec.sine * ra.sine, dec.cosine}};
+}
+
 SkyPosition to_sky_position(Direction direction) {
   const double equatorial = det::hypot(direction.x, direction.y);
   const double ra = equatorial > 0.0 ? to_degrees(Radians(det::atan2(direction.y, direction.x))).value() : 0.0;

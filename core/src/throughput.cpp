@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "astroid/core/math.hpp"
+#include "astroid/core/run_time.hpp"
 
 namespace astroid {
 
@@ -20,10 +21,7 @@ double throughput_at(const Mission& mission, Seconds time) {
 }
 
 double mean_throughput(const Mission& mission) {
-  const SimulationSettings& s = mission.simulation;
-  const double middle =
-      0.5 * (static_cast<double>(s.exposures - 1) * s.cycle.value() + s.exposure_time.value());  // it is linear in time
-  return throughput_at(mission, Seconds(middle));
+  return throughput_at(mission, middle_of_run(mission.simulation));  // it is linear in time
 }
 
 double vignetting_at(const VignettingSettings& settings, Degrees angle) {

@@ -29,19 +29,6 @@ constexpr double kEdgeWidth = 1e-10;     // deg inside the horizon that count as
 constexpr std::size_t kCardLength = 80;  // characters, FITS standard
 constexpr double kWorldEquinox = 2000.0;
 
-// Unit vectors of the camera's axes on the sky. Left-handed: seen from inside, the sky is a mirror image.
-struct CameraFrame {
-  Direction x;     ///< towards which pixel x grows, at the axis
-  Direction y;     ///< towards which pixel y grows, at the axis
-  Direction axis;  ///< the optical axis
-};
-
-Direction combine(double a, const Direction& u, double b, const Direction& v) {
-  return {a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
-}
-double dot(const Direction& u, const Direction& v) {
-  return u.x * v.x + u.y * v.y + u.z * v.z;
-}
 Direction unit_vector(const Direction& u) {
   return combine(1.0 / det::sqrt(dot(u, u)), u, 0.0, u);
 }
@@ -175,7 +162,7 @@ struct SkyProjection::State {
   double reach = 0.0;  // deg
   PixelScale scale{};
   std::string code{};
-  CameraFrame frame{};
+  CameraAxes frame{};                         // about which attitudes turn
   std::optional<SipFit> header_distortion{};  // nothing: none, or none that is good enough
 
   State(WcsPointer wcs, std::optional<CameraPointing> p) : engine(std::move(wcs)), pointing(std::move(p)) {
@@ -190,7 +177,9 @@ struct SkyProjection::State {
       axis = {wrap_degrees(pointing->axis.ra), pointing->axis.dec};
       axis_pixel = pointing->axis_pixel;
       scale = pointing->scale;
-      set_frame(cd_matrix(*pointing));
+      CameraPointing turned = *pointing;
+      if (pointing->spacecraft) turned.roll = pointing->spacecraft->roll;
+      set_frame(pointing->spacecraft ? pointing->spacecraft->axis : axis, cd_matrix(turned));
       set_header_distortion();
     } else {
       measure_frame();
@@ -198,12 +187,9 @@ struct SkyProjection::State {
   }
 
   // @param cd  degrees on the tangent plane per pixel, row by row: (east, north) of x, y
-  void set_frame(const std::array<double, 4>& cd) {
-    const SineCosine ra = sine_cosine(Degrees(axis.ra));
-    const SineCosine dec = sine_cosine(Degrees(axis.dec));
-    const Direction east{-ra.sine, ra.cosine, 0.0};
-    const Direction north{-dec.sine * ra.cosine, -dec.sine * ra.sine, dec.cosine};
-    frame.axis = to_direction(axis);
+  void set_frame(SkyPosition about, const std::array<double, 4>& cd) {
+    const auto [east, north] = horizon(about);
+    frame.axis = to_direction(about);
     frame.x = unit_vector(combine(cd[0], east, cd[2], north));
     const Direction y = combine(cd[1], east, cd[3], north);
     frame.y = unit_vector(combine(1.0, y, -dot(y, frame.x), frame.x));
@@ -245,7 +231,7 @@ struct SkyProjection::State {
     const double area = std::abs(x.xi * y.eta - x.eta * y.xi);
     if (!(area > 0.0)) throw std::runtime_error("no image around its reference point");
     scale = PixelScale(to_arcseconds(Degrees(det::sqrt(area))).value());
-    set_frame({x.xi, y.xi, x.eta, y.eta});
+    set_frame(axis, {x.xi, y.xi, x.eta, y.eta});
   }
 
   // Unrounded; NaN where there is no image.

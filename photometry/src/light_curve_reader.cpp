@@ -45,6 +45,11 @@ std::size_t column_of(const FitsReader& reader, int unit, const char* name) {
   return *column;
 }
 
+/// Groups of cameras; 0 where all cameras are alike.
+int group_count(const FitsReader& reader) {
+  return static_cast<int>(reader.number(kPrimary, "GROUPS").value_or(0.0));
+}
+
 LightCurveHeader read_header(const FitsReader& reader) {
   LightCurveHeader header;
   header.cameras = static_cast<int>(number_of(reader, "CAMERAS"));
@@ -53,11 +58,22 @@ LightCurveHeader read_header(const FitsReader& reader) {
   header.exposure_time = number_of(reader, "EXPTIME");
   header.start_mjd = number_of(reader, "MJD-BEG");
   header.history = reader.history(kPrimary);
+  const int groups = group_count(reader);
+  for (int camera = 1; groups > 0 && camera <= header.cameras; ++camera) {
+    const int unit = unit_named(reader, fmt::format("CAMERA{}", camera));
+    const auto group = reader.number(unit, "GROUP");
+    const auto stagger = reader.number(unit, "STAGGER");
+    if (!group || !stagger || !(*group >= 1.0 && *group <= groups))
+      refuse(reader, "GROUP", fmt::format("CAMERA{}", camera), "the camera names no group of the file",
+             fmt::format("a group from 1 to {}, and STAGGER", groups));
+    header.group.push_back(static_cast<int>(*group) - 1);
+    header.stagger.push_back(*stagger);
+  }
   return header;
 }
 
-std::vector<LightCurveStar> read_stars(const FitsReader& reader) {
-  const int unit = unit_named(reader, "STARS");
+std::vector<LightCurveStar> read_stars(const FitsReader& reader, const std::string& table) {
+  const int unit = unit_named(reader, table);
   const auto ids = reader.read_texts(unit, column_of(reader, unit, "ID"));
   const auto magnitude = reader.read_numbers(unit, column_of(reader, unit, "MAG"));
   const auto x = reader.read_numbers(unit, column_of(reader, unit, "X"));
@@ -125,11 +141,20 @@ class FlagTable {
   std::size_t camera_, star_, exposure_, length_, flags_;
 };
 
+LightCurveContents read_contents(const FitsReader& reader) {
+  LightCurveContents contents{read_header(reader), read_stars(reader, "STARS")};
+  for (int g = 1; g <= group_count(reader); ++g) {
+    contents.groups.push_back(read_stars(reader, fmt::format("STARS{}", g)));
+    if (contents.groups.back().size() != contents.stars.size())
+      refuse(reader, fmt::format("STARS{}", g), "", "does not have the stars of STARS", kExpectedFile);
+  }
+  return contents;
+}
+
 }  // namespace
 
 struct LightCurveReader::Impl {
-  explicit Impl(const std::string& path)
-      : reader(path), contents{read_header(reader), read_stars(reader)}, flags(reader) {}
+  explicit Impl(const std::string& path) : reader(path), contents(read_contents(reader)), flags(reader) {}
 
   FitsReader reader;
   LightCurveContents contents;
@@ -146,7 +171,7 @@ const LightCurveContents& LightCurveReader::contents() const {
 
 LightCurve LightCurveReader::read(std::size_t star, int camera) const {
   const FitsReader& reader = impl_->reader;
-  const auto& [header, stars] = impl_->contents;
+  const auto& [header, stars, groups] = impl_->contents;
   if (star >= stars.size())
     refuse(reader, "star", fmt::format("number {}", star), "the file has no such star",
            fmt::format("one of the {} in its table STARS", stars.size()));
@@ -157,7 +182,9 @@ LightCurve LightCurveReader::read(std::size_t star, int camera) const {
   const int unit = unit_named(reader, mean ? "COMBINED" : fmt::format("CAMERA{}", std::max(camera, 1)));
 
   LightCurve curve;
-  curve.star = stars[star];
+  const bool of_group = camera > 0 && !groups.empty();
+  curve.star = of_group ? groups[static_cast<std::size_t>(header.group[static_cast<std::size_t>(camera) - 1])][star]
+                        : stars[star];
   const auto count = static_cast<std::size_t>(std::max<std::int64_t>(header.exposures, 0));
   std::vector<float> deviation(count);
   if (count > 0) reader.read_pixels(unit, static_cast<std::int64_t>(star) * header.exposures, deviation);
@@ -166,7 +193,7 @@ LightCurve LightCurveReader::read(std::size_t star, int camera) const {
   const int last_camera = mean ? header.cameras : first_camera;
   for (int c = first_camera; c <= last_camera; ++c) impl_->flags.add(c, star, curve.flags);
   for (std::size_t k = 0; k < count; ++k) {
-    curve.time.push_back(mid_exposure(header, static_cast<std::int64_t>(k)));
+    curve.time.push_back(mid_exposure(header, static_cast<std::int64_t>(k), mean ? 0 : camera));
     curve.flux.push_back(curve.star.reference * (1.0 + static_cast<double>(deviation[k])));
   }
   return curve;
@@ -182,8 +209,7 @@ LightCurve LightCurveReader::read(const std::string& id, int camera) const {
 }
 
 LightCurveContents read_light_curve_contents(const std::string& path) {
-  const FitsReader reader(path);
-  return {read_header(reader), read_stars(reader)};
+  return read_contents(FitsReader(path));
 }
 
 LightCurve read_light_curve(const std::string& path, const std::string& id, int camera) {

@@ -4,6 +4,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "astroid/core/error.hpp"
 #include "astroid/core/fits.hpp"
@@ -49,18 +50,19 @@ struct LightCurveWriter::Impl {
     Mean* mean = nullptr;  // with several cameras
   };
 
-  Impl(const std::string& path, const LightCurveHeader& h, std::span<const LightCurveStar> s)
-      : header(h), stars(static_cast<std::int64_t>(s.size())), writer(path) {
+  Impl(const std::string& path, const LightCurveHeader& h, std::span<const LightCurveStar> s,
+       std::vector<std::vector<LightCurveStar>> g)
+      : header(h), stars(static_cast<std::int64_t>(s.size())), groups(std::move(g)), writer(path) {
     ASTROID_CHECK_LE(1, header.cameras);
     ASTROID_CHECK_LE(header.cameras, std::numeric_limits<std::uint8_t>::max());
     ASTROID_CHECK_LE(0, header.exposures);
     written.assign(static_cast<std::size_t>(header.cameras), 0);
     begin_primary();
     write_times();
-    write_stars(s);
+    write_stars(s, "STARS");
     for (int camera = 1; camera <= header.cameras; ++camera)
-      images.push_back(begin_image("CAMERA" + std::to_string(camera)));
-    if (header.cameras > 1) combined = begin_image("COMBINED");
+      images.push_back(begin_image("CAMERA" + std::to_string(camera), camera_cards(camera)));
+    if (header.cameras > 1) combined = begin_image("COMBINED", {});
   }
 
   void begin_primary() {
@@ -72,6 +74,7 @@ struct LightCurveWriter::Impl {
     writer.card({"CYCLE", header.cycle, "[s] from exposure to exposure"});
     writer.card({"EXPTIME", header.exposure_time, "[s] exposure time"});
     writer.card({"MJD-BEG", header.start_mjd, "[d] TDB, start of the first exposure"});
+    if (!groups.empty()) writer.card({"GROUPS", static_cast<int>(groups.size()), "number of groups of cameras"});
     for (const std::string& line : header.history) writer.history(line);
   }
 
@@ -93,7 +96,14 @@ struct LightCurveWriter::Impl {
     }
   }
 
-  void write_stars(std::span<const LightCurveStar> s) {
+  [[nodiscard]] std::vector<FitsCard> camera_cards(int camera) const {
+    if (groups.empty()) return {};
+    return {
+        {"GROUP", header.group.at(static_cast<std::size_t>(camera) - 1) + 1, "of this camera: stars in STARSn"},
+        {"STAGGER", header.stagger.at(static_cast<std::size_t>(camera) - 1), "[s] from a cycle's start; TIME: mean"}};
+  }
+
+  void write_stars(std::span<const LightCurveStar> s, const std::string& name) {
     writer.begin_table({{"ID", FitsNumber::kFloat64, "", longest_id(s)},
                         {"MAG", FitsNumber::kFloat64, "mag"},
                         {"X", FitsNumber::kFloat64, "pixel"},
@@ -101,7 +111,7 @@ struct LightCurveWriter::Impl {
                         {"REFERENCE", FitsNumber::kFloat64, "electron"},
                         {"NSR", FitsNumber::kFloat64},
                         {"FLAGS", FitsNumber::kInt32}},
-                       "STARS", stars);
+                       name, stars);
     if (s.empty()) return;
     std::vector<std::int32_t> star_flags;
     star_flags.reserve(s.size());
@@ -115,12 +125,13 @@ struct LightCurveWriter::Impl {
     writer.write_column(6, 0, star_flags);
   }
 
-  int begin_image(const std::string& name) {
+  int begin_image(const std::string& name, const std::vector<FitsCard>& cards) {
     // An image without pixels is written as a header alone: FITS knows no axis of length 0 that readers agree on.
     const bool empty = stars == 0 || header.exposures == 0;
     const int unit = empty ? writer.begin_image(FitsNumber::kFloat32, {}, name)
                            : writer.begin_large_image(FitsNumber::kFloat32, {header.exposures, stars}, name);
     writer.card({"BUNIT", "", "relative deviation from REFERENCE"});
+    writer.cards(cards);
     if (!empty) writer.end_large_header();
     return unit;
   }
@@ -216,6 +227,7 @@ struct LightCurveWriter::Impl {
 
   LightCurveHeader header;
   std::int64_t stars;
+  std::vector<std::vector<LightCurveStar>> groups;
   FitsWriter writer;
   std::vector<int> images;  // unit of each camera
   int combined = 0;
@@ -227,8 +239,9 @@ struct LightCurveWriter::Impl {
 };
 
 LightCurveWriter::LightCurveWriter(const std::string& path, const LightCurveHeader& header,
-                                   std::span<const LightCurveStar> stars)
-    : impl_(std::make_unique<Impl>(path, header, stars)) {}
+                                   std::span<const LightCurveStar> stars,
+                                   std::vector<std::vector<LightCurveStar>> groups)
+    : impl_(std::make_unique<Impl>(path, header, stars, std::move(groups))) {}
 
 LightCurveWriter::~LightCurveWriter() = default;
 
@@ -259,6 +272,8 @@ void LightCurveWriter::add_flags(std::span<const LightCurveFlag> flags) {
 
 void LightCurveWriter::commit(Durability durability) {
   for (const std::int64_t written : impl_->written) ASTROID_CHECK_EQ(written, impl_->header.exposures);
+  for (std::size_t g = 0; g < impl_->groups.size(); ++g)
+    impl_->write_stars(impl_->groups[g], "STARS" + std::to_string(g + 1));
   impl_->write_flags();
   impl_->writer.commit(durability);
 }

@@ -358,18 +358,11 @@ void StarEstimatorBuilder::differentiate(std::size_t star, const Rectangle& box,
     LightChange& change = along_x ? change_x_ : change_y_;
     change.target.assign(box.size(), 0.0);
     change.contaminants.assign(box.size(), 0.0);
-    for (const double sign : {1.0, -1.0}) {
-      const auto add_moved = [&](std::size_t index, const Rectangle& stamp, std::span<double> light) {
-        FieldStar moved;
-        moved.position = model_.stars[index].position;
-        (along_x ? moved.position.x : moved.position.y) += sign * kGradientStep;
-        moved.electrons = sign * model_.stars[index].electrons;
-        add_star(*model_.psf, moved, stamp, box, light, scratch_);
-      };
-      add_moved(star, box, change.target);
-      for (const std::size_t neighbour : neighbours)
-        if (neighbour != star) add_moved(neighbour, stamps_[neighbour], change.contaminants);
-    }
+    add_change(*model_.psf, model_.stars[star], box, box, along_x, change.target, scratch_);
+    for (const std::size_t neighbour : neighbours)
+      if (neighbour != star)
+        add_change(*model_.psf, model_.stars[neighbour], stamps_[neighbour], box, along_x, change.contaminants,
+                   scratch_);
   }
 }
 

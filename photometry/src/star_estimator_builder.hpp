@@ -15,9 +15,6 @@ namespace astroid::detail {
 /// Fewest annulus pixels that are trusted with a local background.
 inline constexpr std::size_t kFewestBackgroundPixels = 12;
 
-/// Central difference for d ln F/dx: its own error is h²/6 F''' ~ 1e-6 of the gradient, rounding adds 1e-13.
-inline constexpr double kGradientStep = 1e-3;  // px
-
 /// The pixels that the estimator of each target may use with weight; empty for unusable positions.
 std::vector<Rectangle> aperture_windows(const GroundModel& model, const PhotometrySettings& settings);
 

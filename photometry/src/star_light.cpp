@@ -92,6 +92,15 @@ void add_star(const PixelPsf& psf, const FieldStar& star, const Rectangle& stamp
   }
 }
 
+void add_change(const PixelPsf& psf, const FieldStar& star, const Rectangle& stamp, const Rectangle& box, bool along_x,
+                std::span<double> light, std::vector<double>& scratch) {
+  for (const double sign : {1.0, -1.0}) {
+    FieldStar moved{.id = {}, .position = star.position, .electrons = sign * star.electrons};
+    (along_x ? moved.position.x : moved.position.y) += sign * kGradientStep;
+    add_star(psf, moved, stamp, box, light, scratch);
+  }
+}
+
 Plane<double, unit::ExpectedElectrons> expected_light(const PixelLayout& layout, const GroundModel& model,
                                                       std::span<const Rectangle> stamps) {
   Plane<double, unit::ExpectedElectrons> light(std::make_shared<const PixelLayout>(layout));

@@ -44,6 +44,13 @@ Overlaps stamps_on_windows(std::span<const Rectangle> stamps, std::span<const Re
 void add_star(const PixelPsf& psf, const FieldStar& star, const Rectangle& stamp, const Rectangle& box,
               std::span<double> light, std::vector<double>& scratch);
 
+/// Central difference for d ln F/dx: its own error is h²/6 F''' ~ 1e-6 of the gradient, rounding adds 1e-13.
+inline constexpr double kGradientStep = 1e-3;  // px
+
+/// Adds how the light of one star changes when it moves by 2 kGradientStep along x or y, as add_star() does.
+void add_change(const PixelPsf& psf, const FieldStar& star, const Rectangle& stamp, const Rectangle& box, bool along_x,
+                std::span<double> light, std::vector<double>& scratch);
+
 /// Expected light of all stars over a layout, e- per exposure. Stars are added in the order of the model.
 Plane<double, unit::ExpectedElectrons> expected_light(const PixelLayout& layout, const GroundModel& model,
                                                       std::span<const Rectangle> stamps);

@@ -15,27 +15,6 @@ constexpr double kAberrationConstant = 20.49552 / kArcsecPerRadian;
 /// Distance of L2 from the Sun over the Earth's: 1 + (m/3)^(1/3), m = 3.0404e-6 of Earth and Moon.
 constexpr double kLagrange2 = 1.01004;
 
-double dot(const Direction& a, const Direction& b) {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-
-/// The directions on the sky in which x and y of the detector grow, at the axis.
-struct DetectorAxes {
-  Direction x, y, axis;
-};
-DetectorAxes detector_axes(const CameraPointing& pointing) {
-  const SineCosine ra = sine_cosine(Degrees(pointing.axis.ra));
-  const SineCosine dec = sine_cosine(Degrees(pointing.axis.dec));
-  const SineCosine roll = sine_cosine(pointing.roll);
-  const Direction east{-ra.sine, ra.cosine, 0.0};
-  const Direction north{-dec.sine * ra.cosine, -dec.sine * ra.sine, dec.cosine};
-  const auto combine = [&](double e, double n) {
-    return Direction{e * east.x + n * north.x, e * east.y + n * north.y, e * east.z + n * north.z};
-  };
-  // CD = scale [-cos -sin; -sin cos] (CameraPointing).
-  return {combine(-roll.cosine, -roll.sine), combine(-roll.sine, roll.cosine), to_direction(pointing.axis)};
-}
-
 }  // namespace
 
 Velocity spacecraft_velocity(double mjd) {
@@ -49,12 +28,11 @@ Velocity spacecraft_velocity(double mjd) {
   return {vx, vy * obliquity.cosine, vy * obliquity.sine};
 }
 
-AberrationJacobian aberration_jacobian(SkyPosition star, SkyPosition boresight, const CameraPointing& pointing,
-                                       const AttitudeJacobian& motion) {
+AberrationJacobian aberration_jacobian(SkyPosition star, const Boresight& boresight, const AttitudeJacobian& motion) {
   const Direction n = to_direction(star);
-  const Direction b = to_direction(boresight);
-  const DetectorAxes detector = detector_axes(pointing);
-  const double cosine = dot(n, detector.axis);
+  const CameraAxes axes = camera_axes(boresight);
+  const Direction& b = axes.axis;
+  const double cosine = dot(n, b);
   AberrationJacobian jacobian;
   if (!(cosine > 0.0)) return jacobian;
   const double apart = 1.0 - dot(n, b);
@@ -63,8 +41,8 @@ AberrationJacobian aberration_jacobian(SkyPosition star, SkyPosition boresight, 
     Direction shift{-along_star[i] * (n.x - b.x), -along_star[i] * (n.y - b.y), -along_star[i] * (n.z - b.z)};
     (i == 0 ? shift.x : (i == 1 ? shift.y : shift.z)) += apart;
     // The yaw and pitch that would move this star as far: they move it by their angle times the cosine.
-    const double yaw = kArcsecPerRadian * dot(shift, detector.x) / cosine;
-    const double pitch = kArcsecPerRadian * dot(shift, detector.y) / cosine;
+    const double yaw = kArcsecPerRadian * dot(shift, axes.x) / cosine;
+    const double pitch = kArcsecPerRadian * dot(shift, axes.y) / cosine;
     jacobian.x[i] = motion.dx_dyaw * yaw + motion.dx_dpitch * pitch;
     jacobian.y[i] = motion.dy_dyaw * yaw + motion.dy_dpitch * pitch;
   }

@@ -2,11 +2,6 @@
 
 namespace astroid {
 
-PixelShift displacement(const AttitudeJacobian& jacobian, const Attitude& attitude) {
-  return {jacobian.dx_dyaw * attitude.yaw + jacobian.dx_dpitch * attitude.pitch + jacobian.dx_droll * attitude.roll,
-          jacobian.dy_dyaw * attitude.yaw + jacobian.dy_dpitch * attitude.pitch + jacobian.dy_droll * attitude.roll};
-}
-
 std::vector<Attitude> AttitudeModel::sample(std::int64_t count, int steps) const {
   std::vector<Attitude> all;
   all.reserve(static_cast<std::size_t>(count) * static_cast<std::size_t>(steps));
@@ -37,23 +32,6 @@ AttitudeMoments attitude_moments(std::span<const Attitude> attitude) {
   return moments;
 }
 
-MotionCovariance motion_covariance(const AttitudeJacobian& j, const AttitudeCovariance& v) {
-  // Covariance of (a . attitude) and (b . attitude) for rows a, b of the Jacobian.
-  const auto product = [&v](const Attitude& a, const Attitude& b) {
-    return a.yaw * b.yaw * v.yaw_yaw + a.pitch * b.pitch * v.pitch_pitch + a.roll * b.roll * v.roll_roll +
-           (a.yaw * b.pitch + a.pitch * b.yaw) * v.yaw_pitch + (a.yaw * b.roll + a.roll * b.yaw) * v.yaw_roll +
-           (a.pitch * b.roll + a.roll * b.pitch) * v.pitch_roll;
-  };
-  const Attitude x{j.dx_dyaw, j.dx_dpitch, j.dx_droll};
-  const Attitude y{j.dy_dyaw, j.dy_dpitch, j.dy_droll};
-  return {.sxx = product(x, x), .sxy = product(x, y), .syy = product(y, y)};
-}
-
-MotionCovariance motion_covariance(const AttitudeJacobian& jacobian, const AttitudeVariance& attitude) {
-  return motion_covariance(
-      jacobian, AttitudeCovariance{.yaw_yaw = attitude.yaw, .pitch_pitch = attitude.pitch, .roll_roll = attitude.roll});
-}
-
 namespace {
 
 class StillAttitude final : public AttitudeModel {
@@ -65,6 +43,9 @@ class StillAttitude final : public AttitudeModel {
   }
   [[nodiscard]] AttitudeVariance variance() const override { return {}; }
   [[nodiscard]] AttitudeVariance variance_of_mean(std::int64_t /*exposures*/) const override { return {}; }
+  [[nodiscard]] AttitudeVariance covariance_of_mean(std::int64_t /*exposures*/, Seconds /*lag*/) const override {
+    return {};
+  }
   [[nodiscard]] int steps_for(double /*fraction*/) const override { return 1; }
   [[nodiscard]] std::string description() const override { return "the spacecraft does not move"; }
 };

@@ -9,6 +9,7 @@
 
 #include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/run_time.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "named_columns.hpp"
 
@@ -26,6 +27,7 @@ class FileAttitude final : public AttitudeModel {
       : path_(std::move(path)),
         time_(std::move(time)),
         attitude_(std::move(attitude)),
+        stagger_(simulation.stagger.value()),
         cycle_(simulation.cycle.value()),
         exposure_(simulation.exposure_time.value()),
         exposures_(simulation.exposures) {}
@@ -34,30 +36,19 @@ class FileAttitude final : public AttitudeModel {
                          const std::function<void(std::span<const Attitude>)>& visit) const override {
     std::vector<Attitude> attitude(static_cast<std::size_t>(steps));
     for (std::int64_t k = 0; k < count; ++k) {
-      for (std::size_t i = 0; i < attitude.size(); ++i)
-        attitude[i] = at(static_cast<double>(k) * cycle_ + (static_cast<double>(i) + 0.5) * exposure_ / steps);
+      take_exposure(k, 0.0, attitude);
       visit(attitude);
     }
   }
 
-  [[nodiscard]] AttitudeVariance variance() const override { return variance_of(attitude_); }
+  [[nodiscard]] AttitudeVariance variance() const override { return covariance_of(attitude_, attitude_); }
 
   [[nodiscard]] AttitudeVariance variance_of_mean(std::int64_t exposures) const override {
-    const int steps = steps_for(0.0);
-    const std::vector<Attitude> all = sample(exposures_, steps);
-    const std::size_t block =
-        static_cast<std::size_t>(std::min(exposures, exposures_)) * static_cast<std::size_t>(steps);
-    std::vector<Attitude> means;
-    for (std::size_t first = 0; first + block <= all.size(); first += block) {
-      Attitude mean;
-      for (std::size_t i = first; i < first + block; ++i) {
-        mean.yaw += all[i].yaw / static_cast<double>(block);
-        mean.pitch += all[i].pitch / static_cast<double>(block);
-        mean.roll += all[i].roll / static_cast<double>(block);
-      }
-      means.push_back(mean);
-    }
-    return variance_of(means);
+    return covariance_of_mean(exposures, Seconds(0.0));
+  }
+
+  [[nodiscard]] AttitudeVariance covariance_of_mean(std::int64_t exposures, Seconds lag) const override {
+    return covariance_of(means(exposures, 0.0), means(exposures, lag.value()));
   }
 
   [[nodiscard]] int steps_for(double /*fraction*/) const override {
@@ -84,8 +75,35 @@ class FileAttitude final : public AttitudeModel {
     return {a.yaw + u * (b.yaw - a.yaw), a.pitch + u * (b.pitch - a.pitch), a.roll + u * (b.roll - a.roll)};
   }
 
-  static AttitudeVariance variance_of(const std::vector<Attitude>& series) {
-    if (series.size() < 2) return {};
+  /// The attitudes of exposure k, or of one that begins `lag` later.
+  void take_exposure(std::int64_t k, double lag, std::vector<Attitude>& attitude) const {
+    const double begin = stagger_ + lag + static_cast<double>(k) * cycle_;
+    for (std::size_t i = 0; i < attitude.size(); ++i)
+      attitude[i] = at(begin + (static_cast<double>(i) + 0.5) * exposure_ / static_cast<double>(attitude.size()));
+  }
+
+  /// Means over so many successive exposures each, as many as the run has.
+  [[nodiscard]] std::vector<Attitude> means(std::int64_t exposures, double lag) const {
+    const std::int64_t block = std::min(exposures, exposures_);
+    std::vector<Attitude> attitude(static_cast<std::size_t>(steps_for(0.0)));
+    const auto count = static_cast<double>(attitude.size()) * static_cast<double>(block);
+    std::vector<Attitude> means;
+    for (std::int64_t first = 0; first + block <= exposures_; first += block) {
+      Attitude mean;
+      for (std::int64_t k = first; k < first + block; ++k) {
+        take_exposure(k, lag, attitude);
+        for (const Attitude& a : attitude) {
+          mean.yaw += a.yaw / count;
+          mean.pitch += a.pitch / count;
+          mean.roll += a.roll / count;
+        }
+      }
+      means.push_back(mean);
+    }
+    return means;
+  }
+
+  static Attitude mean_of(const std::vector<Attitude>& series) {
     const auto n = static_cast<double>(series.size());
     Attitude mean;
     for (const Attitude& a : series) {
@@ -93,19 +111,28 @@ class FileAttitude final : public AttitudeModel {
       mean.pitch += a.pitch / n;
       mean.roll += a.roll / n;
     }
-    AttitudeVariance variance;
-    for (const Attitude& a : series) {
-      variance.yaw += (a.yaw - mean.yaw) * (a.yaw - mean.yaw) / (n - 1.0);
-      variance.pitch += (a.pitch - mean.pitch) * (a.pitch - mean.pitch) / (n - 1.0);
-      variance.roll += (a.roll - mean.roll) * (a.roll - mean.roll) / (n - 1.0);
+    return mean;
+  }
+
+  /// Axis by axis. @param b  as many as `a`
+  static AttitudeVariance covariance_of(const std::vector<Attitude>& a, const std::vector<Attitude>& b) {
+    if (a.size() < 2) return {};
+    const double free = static_cast<double>(a.size()) - 1.0;
+    const Attitude mean_a = mean_of(a);
+    const Attitude mean_b = mean_of(b);
+    AttitudeVariance covariance;
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      covariance.yaw += (a[i].yaw - mean_a.yaw) * (b[i].yaw - mean_b.yaw) / free;
+      covariance.pitch += (a[i].pitch - mean_a.pitch) * (b[i].pitch - mean_b.pitch) / free;
+      covariance.roll += (a[i].roll - mean_a.roll) * (b[i].roll - mean_b.roll) / free;
     }
-    return variance;
+    return covariance;
   }
 
   std::string path_;
   std::vector<double> time_;
   std::vector<Attitude> attitude_;
-  double cycle_, exposure_;
+  double stagger_, cycle_, exposure_;
   std::int64_t exposures_;
 };
 
@@ -132,8 +159,7 @@ std::shared_ptr<const AttitudeModel> make_file_attitude(const std::string& path,
     time.push_back(values[0]);
     attitude.push_back({values[1], values[2], values[3]});
   }
-  const double end =
-      static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() + simulation.exposure_time.value();
+  const double end = end_of_run(simulation).value();
   if (problems.empty() && (time.size() < 2 || time.front() > 0.0 || time.back() < end))
     problems.push_back({.file = path,
                         .parameter = "Satellite/Jitter/File",

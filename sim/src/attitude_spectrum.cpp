@@ -22,6 +22,7 @@ class SpectrumAttitude final : public AttitudeModel {
         source_(std::move(source)),
         lowest_(spectrum[0].lowest()),
         highest_(spectrum[0].highest()),
+        stagger_(simulation.stagger.value()),
         cycle_(simulation.cycle.value()),
         exposure_(simulation.exposure_time.value()) {}
 
@@ -30,7 +31,7 @@ class SpectrumAttitude final : public AttitudeModel {
     std::vector<Attitude> attitude(static_cast<std::size_t>(steps));
     SpectralNoise::Blocks blocks;
     for (std::int64_t exposure = 0; exposure < count; ++exposure) {
-      noise_.at(static_cast<double>(exposure) * cycle_, exposure_ / steps, attitude, blocks);
+      noise_.at(stagger_ + static_cast<double>(exposure) * cycle_, exposure_ / steps, attitude, blocks);
       visit(attitude);
     }
   }
@@ -39,6 +40,9 @@ class SpectrumAttitude final : public AttitudeModel {
 
   [[nodiscard]] AttitudeVariance variance_of_mean(std::int64_t exposures) const override {
     return noise_.variance_of_mean(exposure_, cycle_, exposures);
+  }
+  [[nodiscard]] AttitudeVariance covariance_of_mean(std::int64_t exposures, Seconds lag) const override {
+    return noise_.covariance_of_mean(exposure_, cycle_, exposures, lag.value());
   }
 
   [[nodiscard]] int steps_for(double fraction) const override {
@@ -72,7 +76,7 @@ class SpectrumAttitude final : public AttitudeModel {
   SpectralNoise noise_;
   std::string source_;
   double lowest_, highest_;
-  double cycle_, exposure_;
+  double stagger_, cycle_, exposure_;
 };
 
 }  // namespace

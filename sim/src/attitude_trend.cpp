@@ -6,8 +6,10 @@
 #include <cmath>
 #include <utility>
 
+#include "astroid/catalogues/sky_brightness.hpp"
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/run_time.hpp"
 
 namespace astroid {
 
@@ -20,17 +22,13 @@ constexpr std::size_t kAxes = 3;
 constexpr double kLargestLinear = 0.972;
 constexpr double kLargestQuadratic = 0.504;
 
-double end_of_run(const SimulationSettings& simulation) {
-  return static_cast<double>(simulation.exposures - 1) * simulation.cycle.value() + simulation.exposure_time.value();
-}
-
 /// Length of a quarter and how many begin in the run; without re-pointing there is one.
 struct Quarters {
   double length;
   std::size_t count;
 };
 Quarters quarters_of(const SatelliteSettings& satellite, const SimulationSettings& simulation) {
-  const double end = end_of_run(simulation);
+  const double end = end_of_run(simulation).value();
   const double length = satellite.quarter_days * kSecondsPerDay;
   if (!(length > 0.0)) return {end, 1};
   return {length, static_cast<std::size_t>(std::floor(end / length)) + 1};
@@ -50,6 +48,7 @@ class DriftingAttitude final : public AttitudeModel {
                    const SimulationSettings& simulation)
       : noise_(std::move(noise)),
         trend_(std::move(trend)),
+        stagger_(simulation.stagger.value()),
         cycle_(simulation.cycle.value()),
         exposure_(simulation.exposure_time.value()) {}
 
@@ -58,7 +57,7 @@ class DriftingAttitude final : public AttitudeModel {
     std::vector<Attitude> sum(static_cast<std::size_t>(steps));
     std::int64_t exposure = 0;
     noise_->for_each_exposure(count, steps, [&](std::span<const Attitude> noise) {
-      const double start = static_cast<double>(exposure++) * cycle_;
+      const double start = stagger_ + static_cast<double>(exposure++) * cycle_;
       for (std::size_t i = 0; i < sum.size(); ++i) {
         const Attitude drift = trend_.at(start + (static_cast<double>(i) + 0.5) * exposure_ / steps, start);
         sum[i] = {noise[i].yaw + drift.yaw, noise[i].pitch + drift.pitch, noise[i].roll + drift.roll};
@@ -69,6 +68,9 @@ class DriftingAttitude final : public AttitudeModel {
   [[nodiscard]] AttitudeVariance variance() const override { return noise_->variance(); }
   [[nodiscard]] AttitudeVariance variance_of_mean(std::int64_t exposures) const override {
     return noise_->variance_of_mean(exposures);
+  }
+  [[nodiscard]] AttitudeVariance covariance_of_mean(std::int64_t exposures, Seconds lag) const override {
+    return noise_->covariance_of_mean(exposures, lag);
   }
   [[nodiscard]] int steps_for(double fraction) const override {
     // Within an exposure the drift is a straight line: four midpoints have its mean, and its variance to 6 %.
@@ -84,7 +86,7 @@ class DriftingAttitude final : public AttitudeModel {
  private:
   std::shared_ptr<const AttitudeModel> noise_;
   AttitudeTrend trend_;
-  double cycle_, exposure_;
+  double stagger_, cycle_, exposure_;
 };
 
 }  // namespace
@@ -141,7 +143,7 @@ AttitudeTrend thermo_elastic_drift(const SatelliteSettings& satellite, const Sim
       quarters[q][axis].linear = rate[axis] / kSecondsPerDay + signed_amplitude * kLargestLinear * uniform(1) / pace;
       quarters[q][axis].quadratic = -signed_amplitude * kLargestQuadratic * uniform(2) / (pace * pace);
     }
-  return {std::move(quarters), length, end_of_run(simulation)};
+  return {std::move(quarters), length, end_of_run(simulation).value()};
 }
 
 AttitudeTrend repointing_error(const SatelliteSettings& satellite, const SimulationSettings& simulation,
@@ -154,7 +156,7 @@ AttitudeTrend repointing_error(const SatelliteSettings& satellite, const Simulat
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       quarters[q][axis].constant =
           rms[axis] * normal_at_step(stream, {.step = q, .axis = static_cast<std::uint32_t>(axis)});
-  return {std::move(quarters), length, end_of_run(simulation)};
+  return {std::move(quarters), length, end_of_run(simulation).value()};
 }
 
 AttitudeTrend operator+(const AttitudeTrend& a, const AttitudeTrend& b) {

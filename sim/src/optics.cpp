@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/math.hpp"
 
 namespace astroid {
@@ -39,13 +40,15 @@ std::shared_ptr<const Distortion> make_distortion(const Mission& mission) {
 
 CameraPointing make_pointing(const Mission& mission) {
   const CcdSettings& ccd = mission.ccd;
-  return {.axis = {mission.satellite.ra.value(), mission.satellite.dec.value()},
-          .roll = mission.satellite.roll,
+  const Boresight camera = camera_boresight(mission);
+  return {.axis = camera.axis,
+          .roll = camera.roll,
           .scale = ccd.pixel_scale,
           .axis_pixel = {ccd.axis_x, ccd.axis_y},
           .projection = ccd.projection,
           .distortion = make_distortion(mission),
-          .detector = {0, 0, ccd.columns, ccd.rows}};
+          .detector = {0, 0, ccd.columns, ccd.rows},
+          .spacecraft = spacecraft_boresight(mission)};
 }
 
 SkyProjection make_projection(const Mission& mission) {

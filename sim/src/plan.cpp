@@ -76,6 +76,17 @@ std::string describe_pixels(const Scene& scene, const Plan& plan) {
   return text;
 }
 
+/// A library or map that is not as fine as the accuracy needs: as fine as it may get, or as the configuration says.
+void note_coarse_psf(const Scene& scene, Plan& plan) {
+  const double share = kAccuracyShares.psf * scene.summary().accuracy;
+  if (plan.renderer_error <= share) return;
+  plan.approximations.push_back(
+      fmt::format("the accuracy asked for is not kept: the PSF errs by {:.2g} ppm, more than its share of {:.2g} ppm; {}",
+                  1e6 * plan.renderer_error, 1e6 * share,
+                  scene.sub_pixel_renderer() != nullptr ? "Simulation/SubPixels can be larger"
+                                                        : "more PSF/Phases or the renderer subpixel may keep it"));
+}
+
 /// Rounding is noise of gain / sqrt(12) only where something blurs its steps (N25).
 void note_coarse_converter(const Scene& scene, std::vector<std::string>& approximations) {
   constexpr double kLeastNoise = 0.5;  // ADU
@@ -154,15 +165,17 @@ std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
 Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch) {
   const std::int64_t length = std::max<std::int64_t>(1, plan.epoch_exposures);
   const double middle = static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1);
-  const Seconds time = middle * scene.mission().simulation.cycle + 0.5 * scene.mission().simulation.exposure_time;
+  const SimulationSettings& simulation = scene.mission().simulation;
+  const Seconds time = simulation.stagger + (middle * simulation.cycle + 0.5 * simulation.exposure_time);
   Conditions conditions;
   for (const PlannedEffect& planned : plan.effects)
     if (planned.need.needed) planned.effect->set_conditions(scene, time, conditions);
   return conditions;
 }
 
-Plan make_plan(const Scene& scene, const CostFactors& costs) {
+Plan make_plan(const Scene& scene, const CostFactors& costs, int least_attitude_steps) {
   Plan plan;
+  plan.knobs.attitude_steps = least_attitude_steps;
   const SceneSummary& summary = scene.summary();
   bool moves = false;
   for (const auto& effect : effect_table(scene.mission().simulation.type)) {
@@ -188,6 +201,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs) {
   if (moves && steady) plan_polynomial(scene, kAccuracyShares.jitter, plan);
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
+  note_coarse_psf(scene, plan);
   if (map != nullptr && plan.knobs.variables && scene.mission().psf.intra_pixel.flat > 0.0)
     plan.approximations.emplace_back(
         "stars that vary see the sensitivity that all pixels share, not what the cells of each have of their own");

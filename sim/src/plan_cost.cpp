@@ -12,42 +12,42 @@ namespace astroid {
 
 namespace {
 
-/// Nanoseconds a pixel and exposure, measured with tests/bench (BM_Effects) on one core of the machine named in
+/// Nanoseconds a pixel and exposure, measured by `astroid doctor --calibrate` on one core of the machine named in
 /// docs/performance.md, which has AVX-512; with SSE4 alone noise takes two to three times as long.
 struct PixelCost {
   std::string_view effect;
   double nanoseconds;
 };
 constexpr PixelCost kPixelCosts[] = {{"sky", 0.1},
-                                     {"zodiacal-sky", 0.6},
-                                     {"stray-light", 0.6},
-                                     {"prnu", 0.4},
-                                     {"dark-current", 0.4},
-                                     {"photon-noise", 2.55},
-                                     {"full-well", 0.3},
-                                     {"readout-noise", 1.45},
-                                     {"gain", 0.15},
+                                     {"zodiacal-sky", 0.85},
+                                     {"stray-light", 0.85},
+                                     {"prnu", 0.27},
+                                     {"dark-current", 0.27},
+                                     {"photon-noise", 2.1},
+                                     {"full-well", 0.12},
+                                     {"readout-noise", 1.15},
+                                     {"gain", 0.17},
                                      {"bias", 0.1},
-                                     {"adc", 0.5},
-                                     {"flat-field", 0.4},
-                                     {"charge-injection", 0.05},
-                                     {"vignetting", 0.4},
+                                     {"adc", 0.22},
+                                     {"flat-field", 0.33},
+                                     {"charge-injection", 0.01},
+                                     {"vignetting", 0.32},
                                      {"variable-stars", 0.2},
-                                     {"open-shutter-smearing", 0.3},
+                                     {"open-shutter-smearing", 0.65},
                                      {"frame-transfer-smearing", 0.7},
-                                     {"hot-pixels", 0.02},
-                                     {"dead-pixels", 0.02},
-                                     {"cross-talk", 1.5},
-                                     {"non-linearity", 0.5},
+                                     {"hot-pixels", 0.01},
+                                     {"dead-pixels", 0.01},
+                                     {"cross-talk", 2.0},
+                                     {"non-linearity", 0.8},
                                      {"bias-drift", 0.1},
-                                     {"row-offset", 0.3},
-                                     {"pick-up-noise", 4.7},
+                                     {"row-offset", 0.14},
+                                     {"pick-up-noise", 2.7},
                                      {"bad-pixel-map", 0.02}};
 /// The same of a CMOS detector, a read (bench: BM_CmosExposure).
-constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 2.0},
+constexpr PixelCost kReadCosts[] = {{"pixel-saturation", 0.5}, {"inter-pixel-capacitance", 6.0},
                                     {"pixel-gain", 0.4},       {"reset-noise", 1.45},
-                                    {"column-noise", 0.4},     {"pixel-offset", 0.4},
-                                    {"ramp-reads", 2.0},       {"ramp-fit", 2.5}};
+                                    {"column-noise", 0.8},     {"pixel-offset", 0.4},
+                                    {"ramp-reads", 3.0},       {"ramp-fit", 2.2}};
 constexpr double kClear = 0.1;     ///< ns a pixel: the noiseless image is set to zero
 constexpr double kRegion = 150.0;  ///< ns a region: what a window takes beyond its pixels
 /// Ns a pixel of one map, where the maps fit into a share of the last cache and where they come from memory.
@@ -84,7 +84,7 @@ double moving_cost(std::string_view effect, const CcdSettings& ccd) {
 
 /// Ns a pixel of the particles of one cycle (bench: BM_CosmicRays).
 double particle_cost(const Mission& mission) {
-  constexpr double kParticle = 550.0;    // ns
+  constexpr double kParticle = 750.0;    // ns
   constexpr double kCentimetres = 1e-4;  // in a micrometre
   const double side = mission.ccd.pixel_size * kCentimetres;
   return kParticle * mission.ccd.cosmic_rays.rate * side * side * mission.simulation.cycle.value();

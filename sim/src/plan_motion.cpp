@@ -81,7 +81,8 @@ void plan_jitter(const Scene& scene, double share, Plan& plan) {
   // noise with all cameras, which it does not share, changes no statistics.
   const double noise = det::sqrt(kVarianceTolerance * s.relative_variance_in_bin(flux) * s.exposures_per_bin);
   const double first_order = s.psf.gradient * s.attitude_rms_px;
-  plan.knobs.attitude_steps = scene.attitude().steps_for(first_order > 0.0 ? noise / first_order : 1.0);
+  plan.knobs.attitude_steps =
+      std::max(plan.knobs.attitude_steps, scene.attitude().steps_for(first_order > 0.0 ? noise / first_order : 1.0));
 
   const double allowed = share * s.flux_tolerance(flux) / flux;  // relative
   // Both axes: half the curvature times the variance of the motion, and what the next order leaves of it.

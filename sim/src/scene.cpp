@@ -17,6 +17,7 @@
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/photometric.hpp"
+#include "astroid/core/run_time.hpp"
 #include "astroid/core/sphere.hpp"
 #include "astroid/core/throughput.hpp"
 #include "astroid/sim/accuracy_shares.hpp"
@@ -45,7 +46,8 @@ std::shared_ptr<const AttitudeModel> make_jitter(const Mission& mission) {
     case JitterModel::kNone:
       return make_still_attitude();
     case JitterModel::kRedNoise:
-      return make_red_noise_attitude(jitter, mission.simulation, attitude_stream(mission, JitterModelEffect::kSpec.id));
+      return make_red_noise_attitude(jitter, mission.simulation, attitude_stream(mission, JitterModelEffect::kSpec.id),
+                                     mission.telescope.groups.stagger);
     case JitterModel::kFile:
       return make_file_attitude(jitter.file, mission.simulation);
     case JitterModel::kSpectrum:
@@ -166,6 +168,8 @@ std::vector<std::size_t> full_frame_targets(const Scene& scene) {
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     : mission_(mission), renderer_(choose_renderer(mission)), jitter_(make_jitter(mission)) {
+  // What a camera sees is that of its group (group_mission()).
+  ASTROID_CHECK_LE(mission_.telescope.groups.cameras.empty() ? -1 : 0, mission_.telescope.group);
   const CcdSettings& ccd = mission_.ccd;
   const SatelliteSettings& satellite = mission_.satellite;
   drift_ = thermo_elastic_drift(satellite, mission_.simulation, attitude_stream(mission_, DriftEffect::kSpec.id));
@@ -232,7 +236,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     s.response = passed * vignetting_at(mission_.telescope.vignetting, *projection_, s.position);
     s.electrons *= s.response;
     s.motion = projection_->attitude_jacobian(direction).value_or(AttitudeJacobian{});
-    if (satellite.aberration) s.aberration = aberration_jacobian(direction, pointing.axis, pointing, s.motion);
+    if (satellite.aberration) s.aberration = aberration_jacobian(direction, *pointing.spacecraft, s.motion);
     stars_.push_back(std::move(s));
   }
   read_variable_stars(catalogue);
@@ -340,7 +344,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
 
 void Scene::read_variable_stars(const StarCatalogue& catalogue) {
   if (mission_.field.variables.empty()) return;
-  variables_ = read_variables(mission_.field.variables, 2.0 * middle_of_run(mission_.simulation).value());
+  variables_ = read_variables(mission_.field.variables, end_of_run(mission_.simulation).value());
   std::unordered_map<std::string, int> number;
   for (std::size_t i = 0; i < variables_.size(); ++i) number[variables_[i].id] = static_cast<int>(i);
   std::unordered_set<std::string> known;
@@ -381,7 +385,7 @@ void Scene::find_sky() {
   // The whole run must be far enough from the Sun, which moves by 5 deg in this time and comes again after a year.
   constexpr double kStep = 5.0 * 86400.0;
   constexpr double kYear = 366.0 * 86400.0;
-  const double end = std::min(2.0 * middle_of_run(mission_.simulation).value(), kYear);
+  const double end = std::min(end_of_run(mission_.simulation).value(), kYear);
   for (double time = 0.0; time < end + kStep; time += kStep)
     for (std::size_t i = 0; i < corners_.size(); ++i) (void)sky_at_corner(i, Seconds(std::min(time, end)));
 }
@@ -413,8 +417,8 @@ void Scene::add_ghost(const SceneStar& star, SkyPosition direction) {
 
 Seconds Scene::mid_time(std::int64_t exposure) const {
   // From the integer exposure number, so that no error accumulates over years.
-  return Seconds(static_cast<double>(exposure) * mission_.simulation.cycle.value() +
-                 0.5 * mission_.simulation.exposure_time.value());
+  return mission_.simulation.stagger + Seconds(static_cast<double>(exposure) * mission_.simulation.cycle.value() +
+                                               0.5 * mission_.simulation.exposure_time.value());
 }
 
 }  // namespace astroid

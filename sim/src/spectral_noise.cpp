@@ -178,6 +178,14 @@ AttitudeVariance SpectralNoise::variance_of_mean(double length, double cycle, st
   });
 }
 
+AttitudeVariance SpectralNoise::covariance_of_mean(double length, double cycle, std::int64_t count, double lag) const {
+  const auto n = static_cast<double>(count);
+  return filtered(n * cycle + std::fabs(lag), [&](double f) {
+    const double response = sinc(f * length) * comb(f * cycle, n);
+    return response * response * det::cos(2.0 * kPi * f * lag);
+  });
+}
+
 AttitudeVariance SpectralNoise::sampling_variance(double length, int steps) const {
   return filtered(length, [&](double f) {
     const double error = comb(f * length / steps, steps) - sinc(f * length);

@@ -42,6 +42,8 @@ class SpectralNoise {
 
   /// Variance of the mean of `count` means over `length` that begin `cycle` apart. @accuracy 1 % of variance()
   [[nodiscard]] AttitudeVariance variance_of_mean(double length, double cycle, std::int64_t count) const;
+  /// Covariance of that mean with the same one `lag` later, s. @accuracy as variance_of_mean()
+  [[nodiscard]] AttitudeVariance covariance_of_mean(double length, double cycle, std::int64_t count, double lag) const;
   /// Variance of the error that the mean of `steps` instants makes of the mean over `length`.
   [[nodiscard]] AttitudeVariance sampling_variance(double length, int steps) const;
   [[nodiscard]] AttitudeVariance variance() const;

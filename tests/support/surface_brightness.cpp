@@ -101,10 +101,13 @@ SurfaceBrightness smooth_brightness(Density density) {
   return {std::move(density), {}, {}};
 }
 
-SurfaceBrightness cut_brightness(Density density, long double reach) {
+SurfaceBrightness faded_brightness(Density density, long double reach) {
+  const long double softness = std::min(0.5L, reach / 24.0L);
   const std::vector<long double> ends = {-reach, reach};
-  return {[density = std::move(density), reach](long double dx, long double dy) {
-            return std::abs(dx) < reach && std::abs(dy) < reach ? density(dx, dy) : 0.0L;
+  return {[density = std::move(density), reach, softness](long double dx, long double dy) {
+            const long double r = std::hypot(dx, dy);
+            const long double edge = (r - reach + 6.0L * softness) / (std::sqrt(2.0L) * softness);
+            return r < reach ? 0.5L * std::erfc(edge) * density(dx, dy) : 0.0L;
           },
           ends, ends};
 }

@@ -35,6 +35,7 @@ int simulate(const AssessOptions& options);
 struct FocalPlaneCommand {
   AssessOptions run;
   int across = 3, down = 3, side = 200;
+  int group = 1;
   std::optional<double> magnitude;
 };
 int focal_plane(const FocalPlaneCommand& options);

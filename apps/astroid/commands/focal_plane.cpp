@@ -15,9 +15,12 @@ constexpr double kMillimagnitudes = 1000.0;
 
 int focal_plane(const FocalPlaneCommand& options) {
   const ResolvedConfiguration configuration = read(options.run.configuration, {});
-  const FocalPlaneResult result = map_focal_plane(
-      configuration, run_options(options.run, "Exposures"),
-      {.across = options.across, .down = options.down, .side = options.side, .magnitude = options.magnitude});
+  const FocalPlaneResult result = map_focal_plane(configuration, run_options(options.run, "Exposures"),
+                                                  {.across = options.across,
+                                                   .down = options.down,
+                                                   .side = options.side,
+                                                   .magnitude = options.magnitude,
+                                                   .group = options.group});
   fmt::print("{:>8} {:>8} {:>8} {:>12} {:>12} {:>11} {:>10}\n", "column", "row", "clean", "predicted", "measured",
              "pollution", "recovery");
   fmt::print("{:>8} {:>8} {:>8} {:>12} {:>12} {:>11} {:>10}\n", "px", "px", "targets", "ppm", "ppm", "ratio", "mmag");

@@ -6,6 +6,7 @@
 #include "astroid/catalogues/catalogue_reader.hpp"
 #include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/photometry/field_photometry.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "commands/commands.hpp"
 #include "commands/configuration.hpp"
@@ -76,7 +77,13 @@ std::filesystem::path output_for(const PhotometryOptions& options, const std::st
 
 int photometry(const PhotometryOptions& options) {
   std::vector<std::string> inputs = options.images;
-  inputs.push_back(options.catalogue);
+  const bool blind = options.catalogue.empty();
+  if (!blind) inputs.push_back(options.catalogue);
+  if (blind && options.method != "psf")
+    throw InputError(Problem{.parameter = "--method",
+                             .value = options.method,
+                             .expected = "--catalogue FILE, or --method psf with --psf",
+                             .message = "without positions stars are found by their PSF"});
   if (!options.psf.empty() && !options.psf.starts_with(kGaussian)) inputs.push_back(options.psf);
   require_files(inputs);
   ImagePhotometrySettings settings;
@@ -99,7 +106,10 @@ int photometry(const PhotometryOptions& options) {
   read.use_overscan = !options.ignore_overscan;
   if (options.exposure_time) read.exposure_time = Seconds(*options.exposure_time);
 
-  const std::vector<SourceRequest> requests = read_requests(options.catalogue);
+  std::vector<SourceRequest> requests;
+  if (!blind) requests = read_requests(options.catalogue);
+  FieldPhotometrySettings field;
+  field.zero_point = settings.zero_point;
   for (const std::string& image : options.images) {
     const std::filesystem::path output = output_for(options, image);
     if (std::filesystem::exists(output) && !options.overwrite)
@@ -107,8 +117,9 @@ int photometry(const PhotometryOptions& options) {
           .file = output.string(), .expected = "another -o FILE, or --overwrite", .message = "the file exists"});
     const ImageFile file = read_frame(image, read);
     for (const std::string& note : file.notes) fmt::print(stderr, "{}: {}\n", image, note);
-    const std::vector<SourceMeasurement> sources =
-        measure_image(file.frame, file.sky ? &*file.sky : nullptr, requests, settings);
+    const SkyProjection* sky = file.sky ? &*file.sky : nullptr;
+    const std::vector<SourceMeasurement> sources = blind ? measure_field(file.frame, sky, *settings.psf, field)
+                                                         : measure_image(file.frame, sky, requests, settings);
     write_sources(output, sources);
     std::size_t measured = 0;
     std::size_t flagged = 0;

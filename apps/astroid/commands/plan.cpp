@@ -1,5 +1,3 @@
-#include "astroid/sim/plan.hpp"
-
 #include <fmt/format.h>
 
 #include "astroid/pipeline/run.hpp"
@@ -10,7 +8,7 @@ namespace astroid::commands {
 
 int plan(const PlanOptions& options) {
   const PreparedRun run = prepare_run(read(options.configuration).mission);
-  fmt::print("{}", options.json ? to_json(*run.plan, *run.scene) : to_text(*run.plan, *run.scene));
+  fmt::print("{}", options.json ? plan_json(run) : plan_text(run));
   return 0;
 }
 

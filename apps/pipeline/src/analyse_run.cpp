@@ -36,8 +36,7 @@ Image<float, unit::Adu> first_frame(const std::filesystem::path& folder) {
 }
 
 /// What the stream would have left, read back from its products.
-StreamResult read_stream(const std::filesystem::path& file, const Scene& scene,
-                         const std::vector<StarEstimator>& estimators) {
+StreamResult read_stream(const std::filesystem::path& file, const Scene& scene, const GroundSegment& ground) {
   const FitsReader fits(file);
   const Mission& mission = scene.mission();
   const std::optional<int> table = fits.find_unit("STARS");
@@ -45,7 +44,8 @@ StreamResult read_stream(const std::filesystem::path& file, const Scene& scene,
   if (!table || !curves) throw not_a_run(file, "there are no light curves in the file");
   const std::vector<FitsUnit>& units = fits.units();
   const FitsUnit& image = units[static_cast<std::size_t>(*curves) - 1];
-  const auto stars = static_cast<std::int64_t>(estimators.size());
+  const std::size_t targets = ground.estimators.front().size();
+  const auto stars = static_cast<std::int64_t>(targets);
   if (image.axes.size() != 2 || image.axes[0] != mission.simulation.exposures || image.axes[1] != stars)
     throw not_a_run(
         file,
@@ -55,8 +55,9 @@ StreamResult read_stream(const std::filesystem::path& file, const Scene& scene,
   if (!reference) throw not_a_run(file, "the table of stars has no column REFERENCE");
   StreamResult result;
   result.reference = fits.read_numbers(*table, *reference);
-  result.flags.resize(estimators.size());
-  for (std::size_t t = 0; t < estimators.size(); ++t) result.flags[t] = estimators[t].flags;
+  result.flags.resize(targets);
+  for (const std::vector<StarEstimator>& estimators : ground.estimators)
+    for (std::size_t t = 0; t < targets; ++t) result.flags[t] |= estimators[t].flags;
   if (const std::optional<int> flags = fits.find_unit("FLAGS")) {
     const auto star = fits.find_column(*flags, "STAR");
     const auto bits = fits.find_column(*flags, "FLAGS");
@@ -74,10 +75,10 @@ StreamResult read_stream(const std::filesystem::path& file, const Scene& scene,
       }
     }
   }
-  SeriesStatistics statistics(estimators.size(),
+  SeriesStatistics statistics(targets,
                               std::max<std::int64_t>(2, static_cast<std::int64_t>(scene.summary().exposures_per_bin)));
   std::vector<float> deviation(static_cast<std::size_t>(mission.simulation.exposures));
-  for (std::size_t t = 0; t < estimators.size(); ++t) {
+  for (std::size_t t = 0; t < targets; ++t) {
     fits.read_pixels(*curves, static_cast<std::int64_t>(t) * mission.simulation.exposures, deviation);
     statistics.add(t, 0, deviation);
   }
@@ -105,16 +106,13 @@ AssessResult analyse_run(const std::filesystem::path& folder, const Configuratio
 
   const ResolvedConfiguration configuration = read_configuration(configuration_file, overrides);
   const PreparedRun run = prepare_run(configuration.mission);
-  const Ground ground = perfect_ground(*run.scene);
-  const std::vector<StarEstimator> estimators =
-      build_estimators(*run.scene->layout(), ground.model, configuration.mission.photometry);
-  StreamResult stream = read_stream(light_curves, *run.scene, estimators);
+  const GroundSegment ground = perfect_ground_segment(run);
+  StreamResult stream = read_stream(light_curves, run.scene(), ground);
   stream.first_frame = first_frame(folder);
   create_folder(output);
   const ReportedRun reported = report_run(output, {.configuration = configuration,
                                                    .prepared = run,
                                                    .ground = ground,
-                                                   .estimators = estimators,
                                                    .stream = stream,
                                                    .light_curves = light_curves});
   std::error_code ignored;
@@ -127,16 +125,11 @@ std::vector<std::filesystem::path> export_stars(const std::filesystem::path& fol
   const std::filesystem::path light_curves = folder / "photometry" / "lightcurves.fits";
   if (!std::filesystem::is_directory(folder)) throw not_a_run(folder, "there is no such folder");
   if (!std::filesystem::exists(light_curves)) throw not_a_run(folder, "there is no photometry/lightcurves.fits in it");
-  const Mission mission = read_configuration(folder / "config.xml").mission;
-  const LightCurveHeader header{.exposures = mission.simulation.exposures,
-                                .cameras = mission.telescope.simulated_cameras,
-                                .start_mjd = mission.simulation.start_mjd,
-                                .cycle = mission.simulation.cycle.value(),
-                                .exposure_time = mission.simulation.exposure_time.value(),
-                                .history = {}};
   // All are read before the first is written: a wrong id leaves nothing behind.
   std::vector<LightCurve> curves;
   const LightCurveReader reader(light_curves.string());
+  LightCurveHeader header = reader.contents().header;
+  header.history.clear();
   for (const std::string& id : ids) curves.push_back(reader.read(id, 0));
   create_folder(output);
   std::vector<std::filesystem::path> files;

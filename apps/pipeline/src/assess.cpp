@@ -1,4 +1,7 @@
+#include <fmt/format.h>
+
 #include <chrono>
+#include <cstddef>
 #include <future>
 #include <string>
 #include <utility>
@@ -29,11 +32,14 @@ double seconds_since(Clock::time_point start) {
 void write_inputs(const std::filesystem::path& folder, const ResolvedConfiguration& configuration,
                   const PreparedRun& run) {
   write_text_file(folder / "config.xml", to_xml(configuration));
-  write_text_file(folder / "plan.txt", to_text(*run.plan, *run.scene));
-  write_text_file(folder / "plan.json", to_json(*run.plan, *run.scene));
+  write_text_file(folder / "plan.txt", plan_text(run));
+  write_text_file(folder / "plan.json", plan_json(run));
   create_folder(folder / "truth");
-  write_truth(folder / "truth" / "stars.csv", *run.scene);
-  write_variable_truth(folder / "truth", *run.scene);
+  for (std::size_t g = 0; g < run.groups.size(); ++g) {
+    const std::string suffix = g == 0 ? "" : fmt::format("_group{}", g + 1);
+    write_truth(folder / "truth" / ("stars" + suffix + ".csv"), *run.groups[g].scene);
+    write_variable_truth(folder / "truth", *run.groups[g].scene, suffix);
+  }
 }
 
 }  // namespace
@@ -43,18 +49,17 @@ AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions
   ProductFolder folder(options.folder, options.existing);
   const std::filesystem::path working = partial_path(folder.path());
   const PreparedRun run = prepare_run(configuration.mission);
-  if (run.scene->targets().empty())
+  if (run.groups.front().targets.empty())
     throw InputError(
         Problem{.file = configuration.mission.field.catalogue,
                 .parameter = "Satellite/Pointing",
-                .expected = "a field with stars brighter than Photometry/TargetLimit on the computed pixels",
+                .expected = "a field with stars brighter than Photometry/TargetLimit on the computed pixels of every "
+                            "group of cameras",
                 .message = "there is no target to assess"});
-  const Ground ground = perfect_ground(*run.scene);
-  const std::vector<StarEstimator> estimators =
-      build_estimators(*run.scene->layout(), ground.model, configuration.mission.photometry);
+  const GroundSegment ground = perfect_ground_segment(run);
   write_inputs(working, configuration, run);
   const StreamResult stream = stream_exposures(
-      run.scene, run.plan, estimators, {.threads = options.threads, .folder = working, .progress = options.progress});
+      stream_groups(run, ground), {.threads = options.threads, .folder = working, .progress = options.progress});
   const Clock::time_point analysis_begin = Clock::now();
   // The largest product by far is complete: its checksum is computed while the report is made.
   const std::filesystem::path light_curves = working / kLightCurves;
@@ -65,7 +70,6 @@ AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions
   const ReportedRun reported = report_run(working, {.configuration = configuration,
                                                     .prepared = run,
                                                     .ground = ground,
-                                                    .estimators = estimators,
                                                     .stream = stream,
                                                     .light_curves = light_curves,
                                                     .threads = options.threads});
@@ -73,8 +77,7 @@ AssessResult assess(const ResolvedConfiguration& configuration, const RunOptions
   if (checksum.valid()) checksums[kLightCurves] = checksum.get();
   write_run_record(folder, {.command_line = options.command_line,
                             .threads = options.threads,
-                            .scene = run.scene.get(),
-                            .plan = run.plan.get(),
+                            .run = &run,
                             .stream = &stream,
                             .analyse_seconds = seconds_since(analysis_begin),
                             .wall_seconds = seconds_since(begin),
@@ -94,16 +97,14 @@ StreamResult simulate(const ResolvedConfiguration& configuration, const RunOptio
   const std::filesystem::path working = partial_path(folder.path());
   const PreparedRun run = prepare_run(configuration.mission);
   write_inputs(working, configuration, run);
-  StreamResult stream = stream_exposures(run.scene, run.plan, {},
+  StreamResult stream = stream_exposures(stream_groups(run, {}),
                                          {.threads = options.threads, .folder = working, .progress = options.progress});
-  const std::span<const std::string> notes = run.scene->notes();
   write_run_record(folder, {.command_line = options.command_line,
                             .threads = options.threads,
-                            .scene = run.scene.get(),
-                            .plan = run.plan.get(),
+                            .run = &run,
                             .stream = &stream,
                             .wall_seconds = seconds_since(begin),
-                            .warnings = {notes.begin(), notes.end()}});
+                            .warnings = run.notes});
   folder.commit();
   return stream;
 }

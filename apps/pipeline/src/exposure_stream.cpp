@@ -8,6 +8,8 @@
 #include <memory>
 #include <utility>
 
+#include "astroid/analysis/group_mean.hpp"
+#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/worker_pool.hpp"
 #include "astroid/pipeline/ground.hpp"
 #include "exposure_worker.hpp"
@@ -29,7 +31,7 @@ double seconds_since(Clock::time_point start) {
 }
 
 /// What the fluxes of each target are relative to, e- per exposure.
-std::vector<double> reference_of(const std::vector<StarEstimator>& estimators) {
+std::vector<double> reference_of(std::span<const StarEstimator> estimators) {
   std::vector<double> reference;
   reference.reserve(estimators.size());
   for (const StarEstimator& e : estimators) {
@@ -40,15 +42,26 @@ std::vector<double> reference_of(const std::vector<StarEstimator>& estimators) {
   return reference;
 }
 
-std::vector<std::uint32_t> own_flags_of(const std::vector<StarEstimator>& estimators) {
+std::vector<std::uint32_t> own_flags_of(std::span<const StarEstimator> estimators) {
   std::vector<std::uint32_t> flags;
   flags.reserve(estimators.size());
   for (const StarEstimator& e : estimators) flags.push_back(e.flags);
   return flags;
 }
 
-std::vector<LightCurveStar> light_curve_stars(const Scene& scene, const std::vector<StarEstimator>& estimators,
-                                              const std::vector<double>& reference) {
+/// What measures the mean of all cameras.
+std::vector<StarEstimator> mean_estimators(std::span<const StreamGroup> groups) {
+  std::vector<StarEstimator> means;
+  std::vector<GroupView> views(groups.size());
+  for (std::size_t t = 0; t < groups.front().estimators.size(); ++t) {
+    for (std::size_t g = 0; g < groups.size(); ++g) views[g] = {&groups[g].estimators[t], groups[g].share};
+    means.push_back(mean_estimator(views));
+  }
+  return means;
+}
+
+std::vector<LightCurveStar> light_curve_stars(const Scene& scene, std::span<const StarEstimator> estimators) {
+  const std::vector<double> reference = reference_of(estimators);
   std::vector<LightCurveStar> stars;
   for (std::size_t t = 0; t < estimators.size(); ++t) {
     const SceneStar& star = scene.stars()[estimators[t].star];
@@ -64,31 +77,67 @@ std::vector<LightCurveStar> light_curve_stars(const Scene& scene, const std::vec
 }
 
 /// photometry/lightcurves.fits, where the configuration asks for it.
-std::unique_ptr<LightCurveWriter> open_light_curves(const Scene& scene, const Plan& plan,
-                                                    const std::vector<StarEstimator>& estimators,
-                                                    const std::vector<double>& reference,
+std::unique_ptr<LightCurveWriter> open_light_curves(std::span<const StreamGroup> groups,
+                                                    std::span<const std::size_t> group_of,
+                                                    std::span<const StarEstimator> mean,
                                                     const std::filesystem::path& folder) {
+  const Scene& scene = *groups.front().scene;
   const Mission& mission = scene.mission();
-  if (estimators.empty() || folder.empty() || mission.output.light_curves == LightCurveOutput::kNone) return nullptr;
+  if (mean.empty() || folder.empty() || mission.output.light_curves == LightCurveOutput::kNone) return nullptr;
   create_folder(folder / "photometry");
-  return std::make_unique<LightCurveWriter>((folder / "photometry" / "lightcurves.fits").string(),
-                                            LightCurveHeader{.exposures = mission.simulation.exposures,
-                                                             .cameras = mission.telescope.simulated_cameras,
-                                                             .start_mjd = mission.simulation.start_mjd,
-                                                             .cycle = mission.simulation.cycle.value(),
-                                                             .exposure_time = mission.simulation.exposure_time.value(),
-                                                             .history = history_of(plan, scene)},
-                                            light_curve_stars(scene, estimators, reference));
+  LightCurveHeader header{.exposures = mission.simulation.exposures,
+                          .cameras = mission.telescope.simulated_cameras,
+                          .start_mjd = mission.simulation.start_mjd,
+                          .cycle = mission.simulation.cycle.value(),
+                          .exposure_time = mission.simulation.exposure_time.value(),
+                          .history = history_of(*groups.front().plan, scene)};
+  for (const std::size_t group : group_of) {
+    header.group.push_back(static_cast<int>(group));
+    header.stagger.push_back(groups[group].scene->mission().simulation.stagger.value());
+  }
+  std::vector<std::vector<LightCurveStar>> stars_of_groups;
+  if (groups.size() > 1)
+    for (const StreamGroup& group : groups)
+      stars_of_groups.push_back(light_curve_stars(*group.scene, group.estimators));
+  return std::make_unique<LightCurveWriter>((folder / "photometry" / "lightcurves.fits").string(), header,
+                                            light_curve_stars(scene, mean), std::move(stars_of_groups));
 }
 
-std::vector<Simulator> make_simulators(const std::shared_ptr<const Scene>& scene,
-                                       const std::shared_ptr<const Plan>& plan) {
-  const int cameras = scene->mission().telescope.simulated_cameras;
-  const std::shared_ptr<const AttitudeSeries> attitude = make_attitude_series(*scene, *plan);
+/// The group of each simulated camera.
+std::vector<std::size_t> groups_of_cameras(std::span<const StreamGroup> groups) {
+  const TelescopeSettings& telescope = groups.front().scene->mission().telescope;
+  std::vector<std::size_t> group_of;
+  group_of.reserve(static_cast<std::size_t>(telescope.simulated_cameras));
+  for (int camera = 0; camera < telescope.simulated_cameras; ++camera)
+    group_of.push_back(groups.size() > 1 ? static_cast<std::size_t>(group_of_camera(telescope, camera)) : 0);
+  return group_of;
+}
+
+std::vector<Simulator> make_simulators(std::span<const StreamGroup> groups, std::span<const std::size_t> group_of) {
+  std::vector<std::shared_ptr<const AttitudeSeries>> attitudes;
+  for (const StreamGroup& group : groups) attitudes.push_back(make_attitude_series(*group.scene, *group.plan));
   std::vector<Simulator> simulators;
-  simulators.reserve(static_cast<std::size_t>(cameras));
-  for (int camera = 0; camera < cameras; ++camera) simulators.emplace_back(scene, plan, camera, attitude);
+  simulators.reserve(group_of.size());
+  for (std::size_t camera = 0; camera < group_of.size(); ++camera) {
+    const StreamGroup& group = groups[group_of[camera]];
+    simulators.emplace_back(group.scene, group.plan, static_cast<int>(camera), attitudes[group_of[camera]]);
+  }
   return simulators;
+}
+
+std::vector<GroupInput> group_inputs(std::span<const StreamGroup> groups, const std::filesystem::path& folder) {
+  std::vector<GroupInput> inputs;
+  inputs.reserve(groups.size());
+  for (const StreamGroup& group : groups) {
+    const Mission& mission = group.scene->mission();
+    inputs.push_back({.mission = mission,
+                      .calibration = FrameCalibration(*group.scene->layout(), calibration_model(mission)),
+                      .estimators = EstimatorSet(group.estimators, mission.ccd.gain, mission.ccd.bias),
+                      .reference = reference_of(group.estimators),
+                      .own_flags = own_flags_of(group.estimators),
+                      .images = ImageFiles(*group.scene, *group.plan, folder)});
+  }
+  return inputs;
 }
 
 /// The loop: while workers fill one block with exposures, they also empty the block before it star by star.
@@ -99,8 +148,8 @@ class Stream {
       : series_(series),
         threads_(threads),
         batch_length_(batch_length),
-        blocks_{FluxBlock(input.estimators.size(), static_cast<std::size_t>(block_length)),
-                FluxBlock(input.estimators.size(), static_cast<std::size_t>(block_length))},
+        blocks_{FluxBlock(input.groups.front().estimators.size(), static_cast<std::size_t>(block_length)),
+                FluxBlock(input.groups.front().estimators.size(), static_cast<std::size_t>(block_length))},
         lost_electrons_(input.simulators.size()) {
     workers_.reserve(static_cast<std::size_t>(threads));
     for (int i = 0; i < threads; ++i) workers_.emplace_back(input, batch_length);
@@ -129,7 +178,7 @@ class Stream {
   }
 
   /// Adds what the workers counted to a result.
-  void add_to(StreamResult& result, const Plan& plan) {
+  void add_to(StreamResult& result, std::span<const StreamGroup> groups) {
     for (const double lost : lost_electrons_) result.lost_electrons += lost;
     result.clipped_pixels = clipped_pixels_;
     for (ExposureWorker& worker : workers_) {
@@ -143,12 +192,13 @@ class Stream {
     }
     // Effects take wall time, too short for a CPU clock; their shares of it are put to the CPU time of all simulation.
     double wall = 0.0;
-    for (std::size_t i = 0; i < plan.effects.size(); ++i) {
-      if (!plan.effects[i].need.needed) continue;
+    for (std::size_t i = 0; i < groups.front().plan->effects.size(); ++i) {
+      const auto runs = [i](const StreamGroup& group) { return group.plan->effects[i].need.needed; };
+      if (std::ranges::none_of(groups, runs)) continue;
       double seconds = 0.0;
-      for (const ExposureWorker& worker : workers_) seconds += worker.state().effect_seconds[i];
+      for (const ExposureWorker& worker : workers_) seconds += worker.effect_seconds()[i];
       wall += seconds;
-      result.effect_seconds.emplace_back(plan.effects[i].effect->spec().name, seconds);
+      result.effect_seconds.emplace_back(groups.front().plan->effects[i].effect->spec().name, seconds);
     }
     for (auto& [name, seconds] : result.effect_seconds)
       seconds = wall > 0.0 ? seconds / wall * result.timings.simulate : 0.0;
@@ -169,36 +219,32 @@ class Stream {
 
 }  // namespace
 
-StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Plan>& plan,
-                              const std::vector<StarEstimator>& estimators, const StreamOptions& options) {
+StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamOptions& options) {
   const Clock::time_point begin = Clock::now();
-  const Mission& mission = scene->mission();
+  const Mission& mission = groups.front().scene->mission();
   const std::int64_t exposures = mission.simulation.exposures;
-  const int cameras = mission.telescope.simulated_cameras;
   const int threads = options.threads > 0 ? options.threads : available_threads();
 
   StreamResult result;
-  result.reference = reference_of(estimators);
-  const std::vector<std::uint32_t> own_flags = own_flags_of(estimators);
-  const std::vector<Simulator> simulators = make_simulators(scene, plan);
-  const EstimatorSet set(estimators, mission.ccd.gain, mission.ccd.bias);
-  const FrameCalibration calibration(*scene->layout(), calibration_model(mission));
-  const ImageFiles images(*scene, *plan, options.folder);
-  const std::unique_ptr<LightCurveWriter> light_curves =
-      open_light_curves(*scene, *plan, estimators, result.reference, options.folder);
+  const std::vector<StarEstimator> mean = mean_estimators(groups);
+  result.reference = reference_of(mean);
+  const std::vector<std::size_t> group_of = groups_of_cameras(groups);
+  const auto cameras = static_cast<int>(group_of.size());
+  const std::vector<Simulator> simulators = make_simulators(groups, group_of);
+  const std::vector<GroupInput> inputs = group_inputs(groups, options.folder);
+  const std::unique_ptr<LightCurveWriter> light_curves = open_light_curves(groups, group_of, mean, options.folder);
 
-  const std::int64_t length = block_length(exposures, estimators.size(), cameras, options.longest_block);
-  const std::size_t batch = estimators.empty() ? 1 : batch_length(scene->layout()->size());
-  const std::int64_t per_bin = std::max<std::int64_t>(2, static_cast<std::int64_t>(scene->summary().exposures_per_bin));
-  SeriesStage series(own_flags, cameras, per_bin, static_cast<std::size_t>(length), light_curves.get());
-  Stream stream({.mission = mission,
-                 .simulators = simulators,
-                 .calibration = calibration,
-                 .estimators = set,
-                 .reference = result.reference,
-                 .own_flags = own_flags,
-                 .images = images,
-                 .progress = options.progress},
+  const std::int64_t length = block_length(exposures, mean.size(), cameras, options.longest_block);
+  std::size_t pixels = 0;
+  for (const StreamGroup& group : groups) pixels = std::max(pixels, group.scene->layout()->size());
+  const std::size_t batch = mean.empty() ? 1 : batch_length(pixels);
+  const std::int64_t per_bin =
+      std::max<std::int64_t>(2, static_cast<std::int64_t>(groups.front().scene->summary().exposures_per_bin));
+  std::vector<std::vector<std::uint32_t>> own_flags;
+  own_flags.reserve(group_of.size());
+  for (const std::size_t group : group_of) own_flags.push_back(inputs[group].own_flags);
+  SeriesStage series(std::move(own_flags), per_bin, static_cast<std::size_t>(length), light_curves.get());
+  Stream stream({.simulators = simulators, .group_of = group_of, .groups = inputs, .progress = options.progress},
                 series, threads, length, batch);
   result.timings.prepare = seconds_since(begin);
 
@@ -215,9 +261,15 @@ StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const s
   result.series = series.summaries();
   result.flags = series.flags();
   result.flagged_share = series.flagged_share();
-  stream.add_to(result, *plan);
+  stream.add_to(result, groups);
   result.timings.wall = seconds_since(begin);
   return result;
+}
+
+StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Plan>& plan,
+                              const std::vector<StarEstimator>& estimators, const StreamOptions& options) {
+  const StreamGroup all{.scene = scene, .plan = plan, .estimators = estimators};
+  return stream_exposures({&all, 1}, options);
 }
 
 }  // namespace astroid

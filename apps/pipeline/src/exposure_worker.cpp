@@ -20,35 +20,54 @@ void subtract_mesh(Frame& frame, const PhotometrySettings& settings) {
 }  // namespace
 
 ExposureWorker::ExposureWorker(const StreamInput& input, std::size_t longest_batch)
-    : input_(input), state_(input.simulators.front().make_state()) {
-  frames_.reserve(longest_batch);
-  for (std::size_t i = 0; i < longest_batch; ++i) frames_.push_back(input.simulators.front().make_state().frame);
+    : input_(input),
+      longest_batch_(longest_batch),
+      group_(input.groups.size()),
+      effect_seconds_(input.simulators.front().make_state().effect_seconds.size(), 0.0) {
+  turn_to(0);
+}
+
+void ExposureWorker::turn_to(int camera) {
+  const auto c = static_cast<std::size_t>(camera);
+  if (input_.group_of[c] == group_) return;
+  effect_seconds_ = effect_seconds();
+  group_ = input_.group_of[c];
+  state_ = input_.simulators[c].make_state();
+  frames_.clear();
+  for (std::size_t i = 0; i < longest_batch_; ++i) frames_.push_back(input_.simulators[c].make_state().frame);
+}
+
+std::vector<double> ExposureWorker::effect_seconds() const {
+  std::vector<double> sum = effect_seconds_;
+  for (std::size_t i = 0; i < state_.effect_seconds.size(); ++i) sum[i] += state_.effect_seconds[i];
+  return sum;
 }
 
 void ExposureWorker::run(Batch batch, FluxBlock& block, std::atomic<std::int64_t>& done) {
+  turn_to(block.camera());
   for (std::size_t i = 0; i < batch.count; ++i) {
     simulate(block.camera(), block.first() + static_cast<std::int64_t>(batch.begin + i));
     block.lost()[batch.begin + i] = state_.lost_electrons;
     block.clipped()[batch.begin + i] = state_.clipped_pixels;
     std::swap(state_.frame, frames_[i]);
   }
-  if (input_.estimators.size() > 0) measure(batch, block);
+  if (group().estimators.size() > 0) measure(batch, block);
   if (!input_.progress) return;
-  const auto all = input_.mission.simulation.exposures * static_cast<std::int64_t>(input_.simulators.size());
+  const auto all = group().mission.simulation.exposures * static_cast<std::int64_t>(input_.simulators.size());
   for (std::size_t i = 0; i < batch.count; ++i) input_.progress(++done, all);
 }
 
 void ExposureWorker::simulate(int camera, std::int64_t exposure) {
   StageClock clock;
   const Simulator& simulator = input_.simulators[static_cast<std::size_t>(camera)];
-  if (input_.images.dumps(camera, exposure)) {
-    simulator.simulate(exposure, state_, input_.images.step_writer(camera, exposure));
+  if (group().images.dumps(camera, exposure)) {
+    simulator.simulate(exposure, state_, group().images.step_writer(camera, exposure));
   } else {
     simulator.simulate(exposure, state_);
   }
   clock.charge(seconds_.simulate);
-  if (input_.images.writes(camera, exposure)) {
-    input_.images.write(state_.frame);
+  if (group().images.writes(camera, exposure)) {
+    group().images.write(state_.frame);
     ++images_written_;
     clock.charge(seconds_.images);
   }
@@ -58,13 +77,13 @@ void ExposureWorker::simulate(int camera, std::int64_t exposure) {
 void ExposureWorker::measure(Batch batch, FluxBlock& block) {
   StageClock clock;
   const std::span<Frame> frames = std::span(frames_).first(batch.count);
-  if (!input_.calibration.does_nothing())
-    for (Frame& frame : frames) input_.calibration.apply(frame, calibration_scratch_);
-  if (input_.mission.photometry.background == BackgroundMethod::kMesh)
-    for (Frame& frame : frames) subtract_mesh(frame, input_.mission.photometry);
-  input_.estimators.apply_batch(
+  if (!group().calibration.does_nothing())
+    for (Frame& frame : frames) group().calibration.apply(frame, calibration_scratch_);
+  if (group().mission.photometry.background == BackgroundMethod::kMesh)
+    for (Frame& frame : frames) subtract_mesh(frame, group().mission.photometry);
+  group().estimators.apply_batch(
       frames, scratch_, [&](std::size_t target, std::span<const double> flux, std::span<const std::uint32_t> flags) {
-        const double reference = input_.reference[target];
+        const double reference = group().reference[target];
         const std::span<float> series = block.deviation(target, batch.begin, batch.count);
         for (std::size_t k = 0; k < flux.size(); ++k) series[k] = static_cast<float>(flux[k] / reference - 1.0);
         note_flags(target, flags, block, batch.begin);
@@ -74,7 +93,7 @@ void ExposureWorker::measure(Batch batch, FluxBlock& block) {
 
 void ExposureWorker::note_flags(std::size_t target, std::span<const std::uint32_t> flags, const FluxBlock& block,
                                 std::size_t begin) {
-  const std::uint32_t own = input_.own_flags[target];
+  const std::uint32_t own = group().own_flags[target];
   std::uint32_t others = 0;
   for (const std::uint32_t flag : flags) others |= flag ^ own;
   if (others == 0) return;

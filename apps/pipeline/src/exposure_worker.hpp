@@ -19,15 +19,21 @@
 
 namespace astroid {
 
+/// How the images of cameras that see the same are measured and written.
+struct GroupInput {
+  const Mission& mission;
+  FrameCalibration calibration;
+  EstimatorSet estimators;
+  std::vector<double> reference;         ///< e- per exposure, of each target
+  std::vector<std::uint32_t> own_flags;  ///< that hold for every exposure, of each target
+  ImageFiles images;
+};
+
 /// What all workers read.
 struct StreamInput {
-  const Mission& mission;
   std::span<const Simulator> simulators;  ///< by camera
-  const FrameCalibration& calibration;
-  const EstimatorSet& estimators;
-  std::span<const double> reference;         ///< e- per exposure, of each target
-  std::span<const std::uint32_t> own_flags;  ///< that hold for every exposure, of each target
-  const ImageFiles& images;
+  std::span<const std::size_t> group_of;  ///< by camera
+  std::span<const GroupInput> groups;
   const Progress& progress;
 };
 
@@ -44,19 +50,25 @@ class ExposureWorker {
   void take_flags(std::vector<LightCurveFlag>& flags);
 
   [[nodiscard]] StreamTimings& seconds() { return seconds_; }
-  [[nodiscard]] const ExposureState& state() const { return state_; }
+  /// Wall seconds of each effect of the plan.
+  [[nodiscard]] std::vector<double> effect_seconds() const;
   [[nodiscard]] std::int64_t images_written() const { return images_written_; }
   /// Exposure 0 of camera 0, if this worker made it.
   [[nodiscard]] Image<float, unit::Adu>& first_frame() { return first_frame_; }
 
  private:
+  void turn_to(int camera);
+  [[nodiscard]] const GroupInput& group() const { return input_.groups[group_]; }
   void simulate(int camera, std::int64_t exposure);
   void measure(Batch batch, FluxBlock& block);
   void note_flags(std::size_t target, std::span<const std::uint32_t> flags, const FluxBlock& block, std::size_t begin);
 
   StreamInput input_;
+  std::size_t longest_batch_;
+  std::size_t group_;  // whose pixels state and frames have
   ExposureState state_;
-  std::vector<Frame> frames_;  // of a batch
+  std::vector<Frame> frames_;           // of a batch
+  std::vector<double> effect_seconds_;  // of groups before
   EstimatorSet::BatchScratch scratch_;
   FrameCalibration::Scratch calibration_scratch_;
   std::vector<LightCurveFlag> flags_;

@@ -90,21 +90,21 @@ void write_truth(const std::filesystem::path& path, const Scene& scene) {
   csv.commit();
 }
 
-void write_variable_truth(const std::filesystem::path& folder, const Scene& scene) {
+void write_variable_truth(const std::filesystem::path& folder, const Scene& scene, const std::string& suffix) {
   std::vector<const SceneStar*> stars;
   for (const SceneStar& star : scene.stars())
     if (star.variability >= 0) stars.push_back(&star);
   if (stars.empty()) return;
   std::vector<std::string> columns{"time"};
   for (const SceneStar* star : stars) columns.push_back(star->id);
-  CsvWriter curves(folder / "variability.csv", columns);
+  CsvWriter curves(folder / ("variability" + suffix + ".csv"), columns);
   for (std::int64_t exposure = 0; exposure < scene.mission().simulation.exposures; ++exposure) {
     curves.cell(scene.mid_time(exposure).value());
     for (const SceneStar* star : stars) curves.cell(relative_flux(scene, *star, exposure));
     curves.end_row();
   }
   curves.commit();
-  CsvWriter table(folder / "variables.csv", {"id", "x", "y", "electrons", "mean_flux", "model"});
+  CsvWriter table(folder / ("variables" + suffix + ".csv"), {"id", "x", "y", "electrons", "mean_flux", "model"});
   for (const SceneStar* star : stars)
     table.row(star->id, star->position.x, star->position.y, star->electrons, mean_relative_flux(scene, *star),
               scene.variables()[static_cast<std::size_t>(star->variability)].variability.description());

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "astroid/core/atomic_file.hpp"
+#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/product_folder.hpp"
 #include "astroid/pipeline/field.hpp"
@@ -47,22 +48,35 @@ double median_magnitude(const Scene& scene) {
   return *middle;
 }
 
+/// The mission of one group of cameras alone. @throws InputError for a group that it does not have
+Mission of_one_group(const Mission& mission, int group) {
+  const int count = group_count(mission.telescope);
+  if (group < 1 || group > count)
+    throw InputError(Problem{.parameter = "--group",
+                             .value = fmt::format("{}", group),
+                             .expected = fmt::format("1 to {}", count),
+                             .message = "the mission has no such group of cameras"});
+  Mission alone = group_mission(mission, group - 1);
+  if (mission.telescope.groups.cameras.empty()) return alone;
+  alone.telescope.cameras = mission.telescope.groups.cameras[static_cast<std::size_t>(group) - 1];
+  alone.telescope.simulated_cameras =
+      mission.telescope.simulated_cameras * alone.telescope.cameras / mission.telescope.cameras;
+  return alone;
+}
+
 /// Simulates one sub-field and measures its targets; nothing is written.
 std::vector<TargetMetrics> measure(const PreparedRun& run, const ResolvedConfiguration& configuration,
                                    const StreamOptions& stream_options) {
-  if (run.scene->targets().empty()) return {};
-  const Ground ground = perfect_ground(*run.scene);
-  const std::vector<StarEstimator> estimators =
-      build_estimators(*run.scene->layout(), ground.model, run.scene->mission().photometry);
-  const StreamResult stream = stream_exposures(run.scene, run.plan, estimators, stream_options);
+  if (run.scene().targets().empty()) return {};
+  const GroundSegment ground = perfect_ground_segment(run);
+  const StreamResult stream = stream_exposures(stream_groups(run, ground), stream_options);
   return target_metrics({.configuration = configuration,
                          .prepared = run,
                          .ground = ground,
-                         .estimators = estimators,
                          .stream = stream,
                          .light_curves = {},
                          .threads = stream_options.threads},
-                        run_setup(run.scene->mission()));
+                        run_setup(run.scene().mission()));
 }
 
 }  // namespace
@@ -71,14 +85,16 @@ FocalPlaneResult map_focal_plane(const ResolvedConfiguration& configuration, con
                                  const FocalPlaneOptions& maps) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point begin = Clock::now();
+  // Groups see different stars on a part of the detector: a map is of one of them, with its own cameras.
+  const Mission camera = of_one_group(configuration.mission, maps.group);
   ProductFolder folder(options.folder, options.existing);
   const std::filesystem::path working = partial_path(folder.path());
   FocalPlaneResult result;
-  const std::vector<Rectangle> fields = sub_fields(configuration.mission, maps);
+  const std::vector<Rectangle> fields = sub_fields(camera, maps);
   const auto all = static_cast<std::int64_t>(fields.size());
   for (std::int64_t i = 0; i < all; ++i) {
     const Rectangle& area = fields[static_cast<std::size_t>(i)];
-    Mission mission = configuration.mission;
+    Mission mission = camera;
     mission.ccd.has_sub_field = true;
     mission.ccd.sub_x0 = area.x0;
     mission.ccd.sub_y0 = area.y0;
@@ -87,7 +103,7 @@ FocalPlaneResult map_focal_plane(const ResolvedConfiguration& configuration, con
     mission.ccd.window = 0;
     const PreparedRun run = prepare_run(mission);
     if (i == 0) {
-      result.reference_magnitude = maps.magnitude.value_or(median_magnitude(*run.scene));
+      result.reference_magnitude = maps.magnitude.value_or(median_magnitude(run.scene()));
       write_text_file(working / "config.xml", to_xml(configuration));
     }
     const std::vector<TargetMetrics> targets =
@@ -95,8 +111,7 @@ FocalPlaneResult map_focal_plane(const ResolvedConfiguration& configuration, con
                 {.threads = options.threads, .folder = {}, .progress = [&](std::int64_t done, std::int64_t of) {
                    if (options.progress) options.progress(i * of + done, all * of);
                  }});
-    result.sub_fields.push_back(
-        sub_field_metrics(area, targets, result.reference_magnitude, run_setup(configuration.mission)));
+    result.sub_fields.push_back(sub_field_metrics(area, targets, result.reference_magnitude, run_setup(camera)));
     if (result.sub_fields.back().clean == 0)
       result.warnings.push_back(
           fmt::format("the sub-field at column {}, row {} has no clean target near magnitude {:.2f}", area.x0, area.y0,
@@ -114,7 +129,7 @@ FocalPlaneResult map_focal_plane(const ResolvedConfiguration& configuration, con
                                   .reference_magnitude = result.reference_magnitude,
                                   .passband = configuration.mission.telescope.zero_point_passband,
                                   .bin_hours = configuration.mission.analysis.bin.value() / kSecondsPerHour,
-                                  .cameras = configuration.mission.telescope.cameras,
+                                  .cameras = camera.telescope.cameras,
                                   .threads = options.threads});
   result.warnings.insert(result.warnings.end(), problems.begin(), problems.end());
   write_run_record(folder, {.command_line = options.command_line,

@@ -29,7 +29,9 @@ std::string file_name(int camera, std::int64_t exposure) {
 std::vector<FitsCard> exposure_cards(const Scene& scene, int camera, std::int64_t exposure) {
   const Mission& mission = scene.mission();
   const double start =
-      mission.simulation.start_mjd + static_cast<double>(exposure) * mission.simulation.cycle.value() / kSecondsPerDay;
+      mission.simulation.start_mjd +
+      (mission.simulation.stagger.value() + static_cast<double>(exposure) * mission.simulation.cycle.value()) /
+          kSecondsPerDay;
   constexpr int kMilliseconds = 3;
   return {{"TELESCOP", "ASTROID", "simulated"},
           {"SIMULATE", true, "not flight data"},

@@ -21,4 +21,41 @@ std::vector<StarMotion> target_motions(const Scene& scene) {
   return star_motions(scene, scene.targets());
 }
 
+namespace {
+
+CrossCovariance cross_covariance(const AttitudeJacobian& a, const AttitudeJacobian& b, const AttitudeVariance& v) {
+  const auto product = [&v](double yaw_a, double pitch_a, double roll_a, double yaw_b, double pitch_b, double roll_b) {
+    return yaw_a * yaw_b * v.yaw + pitch_a * pitch_b * v.pitch + roll_a * roll_b * v.roll;
+  };
+  return {.xx = product(a.dx_dyaw, a.dx_dpitch, a.dx_droll, b.dx_dyaw, b.dx_dpitch, b.dx_droll),
+          .xy = product(a.dx_dyaw, a.dx_dpitch, a.dx_droll, b.dy_dyaw, b.dy_dpitch, b.dy_droll),
+          .yx = product(a.dy_dyaw, a.dy_dpitch, a.dy_droll, b.dx_dyaw, b.dx_dpitch, b.dx_droll),
+          .yy = product(a.dy_dyaw, a.dy_dpitch, a.dy_droll, b.dy_dyaw, b.dy_dpitch, b.dy_droll)};
+}
+
+}  // namespace
+
+AttitudeSharing::AttitudeSharing(const PreparedRun& run) : run_(run) {
+  for (const PreparedGroup& a : run.groups)
+    for (const PreparedGroup& b : run.groups) {
+      const AttitudeModel& attitude = a.scene->attitude();
+      const Seconds lag = b.scene->mission().simulation.stagger - a.scene->mission().simulation.stagger;
+      exposure_.push_back(attitude.covariance_of_mean(1, lag));
+      bin_.push_back(attitude.covariance_of_mean(static_cast<std::int64_t>(a.scene->summary().exposures_per_bin), lag));
+    }
+}
+
+std::vector<CrossMotion> AttitudeSharing::of_target(std::size_t target) const {
+  std::vector<CrossMotion> motions;
+  for (const PreparedGroup& a : run_.groups)
+    for (const PreparedGroup& b : run_.groups) {
+      const AttitudeJacobian& in_a = a.scene->stars()[a.targets[target]].motion;
+      const AttitudeJacobian& in_b = b.scene->stars()[b.targets[target]].motion;
+      const std::size_t pair = motions.size();
+      motions.push_back(
+          {.exposure = cross_covariance(in_a, in_b, exposure_[pair]), .bin = cross_covariance(in_a, in_b, bin_[pair])});
+    }
+  return motions;
+}
+
 }  // namespace astroid

@@ -1,11 +1,17 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <span>
+#include <string>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "astroid/analysis/budget.hpp"
 #include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/camera_groups.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/throughput.hpp"
 #include "astroid/pipeline/calibrate.hpp"
@@ -17,10 +23,73 @@
 
 namespace astroid {
 
+namespace {
+
+/// Keeps the stars that are targets in every group, in the order of the first.
+void find_common_targets(PreparedRun& run) {
+  if (run.groups.size() == 1) {
+    const std::span<const std::size_t> all = run.scene().targets();
+    run.groups.front().targets.assign(all.begin(), all.end());
+    return;
+  }
+  std::unordered_map<std::string, std::size_t> seen;  // by how many groups
+  for (const PreparedGroup& group : run.groups)
+    for (const std::size_t target : group.scene->targets()) ++seen[group.scene->stars()[target].id];
+  std::vector<std::string> common;
+  for (const std::size_t target : run.scene().targets()) {
+    const std::string& id = run.scene().stars()[target].id;
+    if (seen[id] == run.groups.size()) common.push_back(id);
+  }
+  for (PreparedGroup& group : run.groups) {
+    std::unordered_map<std::string, std::size_t> number;
+    for (const std::size_t target : group.scene->targets()) number[group.scene->stars()[target].id] = target;
+    for (const std::string& id : common) group.targets.push_back(number.at(id));
+  }
+  if (common.size() < seen.size())
+    run.notes.push_back(fmt::format("{} of {} stars are targets in some groups of cameras only, and left out",
+                                    seen.size() - common.size(), seen.size()));
+}
+
+/// Notes of the scenes, once where all have them.
+void collect_notes(PreparedRun& run) {
+  const auto all_have = [&](const std::string& note) {
+    return std::ranges::all_of(run.groups, [&](const PreparedGroup& group) {
+      return std::ranges::find(group.scene->notes(), note) != group.scene->notes().end();
+    });
+  };
+  for (std::size_t g = 0; g < run.groups.size(); ++g)
+    for (const std::string& note : run.groups[g].scene->notes()) {
+      const bool is_common = all_have(note);
+      if (is_common && g == 0) run.notes.push_back(note);
+      if (!is_common) run.notes.push_back(fmt::format("group {}: {}", g + 1, note));
+    }
+}
+
+}  // namespace
+
 PreparedRun prepare_run(const Mission& mission) {
+  return prepare_run(mission, load_field(mission));
+}
+
+PreparedRun prepare_run(const Mission& mission, const StarCatalogue& catalogue) {
+  const CostFactors costs = read_costs(costs_file());
+  const bool has_groups = mission.telescope.group < 0 && !mission.telescope.groups.cameras.empty();
+  const int count = has_groups ? group_count(mission.telescope) : 1;
   PreparedRun run;
-  run.scene = std::make_shared<const Scene>(mission, load_field(mission));
-  run.plan = std::make_shared<const Plan>(make_plan(*run.scene, read_costs(costs_file())));
+  int steps = 1;  // of all: cameras that see the same random path must ask for it at the same instants
+  for (int g = 0; g < count; ++g) {
+    PreparedGroup group;
+    group.scene = std::make_shared<const Scene>(has_groups ? group_mission(mission, g) : mission, catalogue);
+    group.plan = std::make_shared<const Plan>(make_plan(*group.scene, costs));
+    if (has_groups) group.share = group_share(mission.telescope, g);
+    steps = std::max(steps, group.plan->knobs.attitude_steps);
+    run.groups.push_back(std::move(group));
+  }
+  for (PreparedGroup& group : run.groups)
+    if (group.plan->knobs.attitude_steps < steps)
+      group.plan = std::make_shared<const Plan>(make_plan(*group.scene, costs, steps));
+  collect_notes(run);
+  find_common_targets(run);
   return run;
 }
 
@@ -46,13 +115,13 @@ double faintest_of(const Scene& scene, std::span<const std::size_t> stars) {
 }
 
 /// Sky as the optics let it through at each target, and dark current.
-std::vector<double> target_backgrounds(const Scene& scene) {
+std::vector<double> target_backgrounds(const Scene& scene, std::span<const std::size_t> targets) {
   const Mission& mission = scene.mission();
   std::vector<double> backgrounds;
   const double passed = mean_throughput(mission);  // which the light has, and the response too
   if (mission.telescope.vignetting.model == VignettingModel::kNone || !(passed > 0.0)) return backgrounds;
   const ElectronsPerSecond light = mean_background_rate(mission);
-  for (const std::size_t target : scene.targets())
+  for (const std::size_t target : targets)
     backgrounds.push_back(expected_pixel_noise(mission, scene.stars()[target].response / passed * light).background);
   return backgrounds;
 }
@@ -105,24 +174,47 @@ CalibrationModel calibration_model(const Mission& mission) {
 }
 
 Ground perfect_ground(const Scene& scene) {
+  return perfect_ground(scene, scene.targets());
+}
+
+GroundSegment perfect_ground_segment(const PreparedRun& run) {
+  GroundSegment segment;
+  for (const PreparedGroup& group : run.groups) {
+    segment.grounds.push_back(perfect_ground(*group.scene, group.targets));
+    segment.estimators.push_back(
+        build_estimators(*group.scene->layout(), segment.grounds.back().model, group.scene->mission().photometry));
+  }
+  return segment;
+}
+
+std::vector<StreamGroup> stream_groups(const PreparedRun& run, const GroundSegment& ground) {
+  std::vector<StreamGroup> groups;
+  for (std::size_t g = 0; g < run.groups.size(); ++g) {
+    const std::span<const StarEstimator> estimators =
+        ground.estimators.empty() ? std::span<const StarEstimator>() : std::span(ground.estimators[g]);
+    groups.push_back({run.groups[g].scene, run.groups[g].plan, estimators, run.groups[g].share});
+  }
+  return groups;
+}
+
+Ground perfect_ground(const Scene& scene, std::span<const std::size_t> targets) {
   Ground ground;
   ground.stars = field_stars(scene);
   ground.model.stars = ground.stars;
-  ground.model.targets = scene.targets();
+  ground.model.targets = targets;
   ground.psf = psf_in_images(scene);
   ground.model.psf = ground.psf.get();
   ground.model.noise = expected_pixel_noise(scene.mission());
-  ground.backgrounds = target_backgrounds(scene);
+  ground.backgrounds = target_backgrounds(scene, targets);
   ground.model.backgrounds = ground.backgrounds;
   // What estimators have in common is decided by the targets of the full frame, whichever pixels are computed: the same
   // weights for a star in a window, a sub-field and the full frame.
-  const std::vector<std::size_t> targets = full_frame_targets(scene);
+  const std::vector<std::size_t> all = full_frame_targets(scene);
   ground.model.accuracy = scene.summary().accuracy;
-  ground.model.faintest_electrons = targets.empty() ? 0.0 : faintest_of(scene, targets);
+  ground.model.faintest_electrons = all.empty() ? 0.0 : faintest_of(scene, all);
   ground.model.contamination_limit = scene.mission().analysis.uncontaminated_spr;
   const RunSetup setup = run_setup(scene.mission());
-  ground.model.motion =
-      motion_like_pixel_noise(mean_bin_motion(scene, targets), setup.exposures_per_bin, setup.cameras);
+  ground.model.motion = motion_like_pixel_noise(mean_bin_motion(scene, all), setup.exposures_per_bin, setup.cameras);
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
   believe_readout(scene, ground.model);

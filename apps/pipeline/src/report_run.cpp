@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "astroid/analysis/contamination.hpp"
+#include "astroid/analysis/group_mean.hpp"
 #include "astroid/analysis/target_metrics.hpp"
 #include "astroid/analysis/verdict.hpp"
 #include "astroid/catalogues/sky_brightness.hpp"
@@ -32,13 +33,13 @@ constexpr std::size_t kShownLightCurves = 6;
 /// photometry/sources.csv: the mean flux of every target over the run.
 void write_mean_sources(const std::filesystem::path& path, const MeasuredRun& run,
                         std::span<const TargetMetrics> targets) {
-  const Scene& scene = *run.prepared.scene;
+  const Scene& scene = run.prepared.scene();
   const double background = expected_pixel_noise(scene.mission()).background;
   std::vector<SourceMeasurement> sources;
   sources.reserve(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t) {
     const TargetMetrics& target = targets[t];
-    const SceneStar& star = scene.stars()[run.estimators[t].star];
+    const SceneStar& star = scene.stars()[run.prepared.groups.front().targets[t]];
     const double ratio = target.nsr_exposure_measured.value / target.nsr_exposure;
     sources.push_back({.id = target.id,
                        .x = target.x,
@@ -58,8 +59,10 @@ void write_mean_sources(const std::filesystem::path& path, const MeasuredRun& ru
 }
 
 std::vector<ContaminationRow> contamination_rows(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
-  const auto neighbours = strongest_contaminants(run.estimators, *run.prepared.scene->layout(), run.ground.model,
-                                                 kNeighbourReach, kListedNeighbours, run.threads);
+  // Of several groups of cameras those that the first one sees.
+  const auto neighbours =
+      strongest_contaminants(run.ground.estimators.front(), *run.prepared.scene().layout(),
+                             run.ground.grounds.front().model, kNeighbourReach, kListedNeighbours, run.threads);
   std::vector<ContaminationRow> rows;
   rows.reserve(targets.size());
   for (std::size_t t = 0; t < targets.size(); ++t)
@@ -72,7 +75,8 @@ std::vector<ContaminationRow> contamination_rows(const MeasuredRun& run, std::sp
 }
 
 /// Magnitudes of the analytic budget: every half magnitude that targets have.
-std::vector<BudgetRow> budget_rows(const Scene& scene) {
+std::vector<BudgetRow> budget_rows(const MeasuredRun& run) {
+  const Scene& scene = run.prepared.scene();
   double bright = std::numeric_limits<double>::infinity();
   double faint = -bright;
   for (const std::size_t t : scene.targets()) {
@@ -81,7 +85,8 @@ std::vector<BudgetRow> budget_rows(const Scene& scene) {
   }
   std::vector<double> magnitudes;
   for (double m = std::floor(2.0 * bright) / 2.0; m <= faint + 0.5; m += 0.5) magnitudes.push_back(m);
-  return analytic_budget(scene.mission(), *psf_in_images(scene), magnitudes);
+  return analytic_budget(run.prepared.groups.size() > 1 ? run.configuration.mission : scene.mission(),
+                         *psf_in_images(scene), magnitudes);
 }
 
 /// Light curves of clean targets spread over the magnitudes, read back from the file.
@@ -110,9 +115,10 @@ std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path&
 }
 
 std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
-  const Scene& scene = *run.prepared.scene;
-  std::vector<std::string> warnings(scene.notes().begin(), scene.notes().end());
-  for (const std::string& note : run.prepared.plan->approximations) warnings.push_back(note);
+  std::vector<std::string> warnings = run.prepared.notes;
+  for (const PreparedGroup& group : run.prepared.groups)
+    for (const std::string& note : group.plan->approximations)
+      if (std::ranges::find(warnings, note) == warnings.end()) warnings.push_back(note);
   const auto unmeasured = std::ranges::count_if(targets, [](const TargetMetrics& t) { return t.exposures == 0; });
   if (unmeasured > 0)
     warnings.push_back(
@@ -131,14 +137,26 @@ std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const Tar
 }  // namespace
 
 std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup& setup) {
-  const Scene& scene = *run.prepared.scene;
-  const std::vector<TruthStar> truth = truth_of(scene);
-  const std::vector<StarMotion> motions = target_motions(scene);
+  const std::vector<PreparedGroup>& groups = run.prepared.groups;
+  std::vector<std::vector<TruthStar>> truth;
+  std::vector<double> shares;
+  for (const PreparedGroup& group : groups) {
+    truth.push_back(truth_of(*group.scene));
+    shares.push_back(group.share);
+  }
+  const AttitudeSharing attitude(run.prepared);
   std::vector<TargetMetrics> targets;
-  targets.reserve(run.estimators.size());
-  for (std::size_t t = 0; t < run.estimators.size(); ++t) {
-    const StarEstimator& estimator = run.estimators[t];
-    TargetMetrics target = predict_target(truth[estimator.star], estimator, motions[t], setup);
+  for (std::size_t t = 0; t < groups.front().targets.size(); ++t) {
+    std::vector<GroupView> views;
+    std::vector<TruthStar> stars;
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+      views.push_back({&run.ground.estimators[g][t], groups[g].share});
+      stars.push_back(truth[g][groups[g].targets[t]]);
+    }
+    const StarEstimator estimator = mean_estimator(views);
+    const PredictedNoise noise =
+        predict_mean_noise(estimator, mean_motion_noise(views, attitude.of_target(t), setup), setup);
+    TargetMetrics target = predict_mean_target(mean_truth(stars, shares), estimator, noise, setup);
     add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
     targets.push_back(std::move(target));
   }
@@ -146,14 +164,13 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
 }
 
 ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run) {
-  const Scene& scene = *run.prepared.scene;
-  const Mission& mission = scene.mission();
+  const Mission& mission = run.prepared.scene().mission();
   const RunSetup setup = run_setup(mission);
   const std::vector<TargetMetrics> targets = target_metrics(run, setup);
   create_folder(folder / "photometry");
   write_mean_sources(folder / "photometry" / "sources.csv", run, targets);
   const std::vector<ContaminationRow> contamination = contamination_rows(run, targets);
-  const std::vector<BudgetRow> budget = budget_rows(scene);
+  const std::vector<BudgetRow> budget = budget_rows(run);
 
   ReportedRun reported;
   const double bin_hours = mission.analysis.bin.value() / kSecondsPerHour;
@@ -168,7 +185,7 @@ ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& r
   input.targets = targets;
   input.contamination = contamination;
   input.budget = budget;
-  input.plan = to_text(*run.prepared.plan, scene);
+  input.plan = plan_text(run.prepared);
   for (const ResolvedParameter& p : run.configuration.parameters)
     input.configuration.push_back({p.path, p.value, p.unit, p.origin});
   for (const ComponentVersion& component : component_versions())

@@ -17,8 +17,7 @@ namespace astroid {
 struct MeasuredRun {
   const ResolvedConfiguration& configuration;
   const PreparedRun& prepared;
-  const Ground& ground;
-  const std::vector<StarEstimator>& estimators;
+  const GroundSegment& ground;
   const StreamResult& stream;
   std::filesystem::path light_curves;  ///< their file; the report shows some, if it is there
   int threads = 0;                     ///< < 1: as many as the process may run; products do not depend on it

@@ -16,6 +16,7 @@
 #include <thread>
 
 #include "astroid/core/atomic_file.hpp"
+#include "astroid/core/camera_groups.hpp"
 #include "host.hpp"
 
 namespace astroid {
@@ -38,6 +39,27 @@ nlohmann::ordered_json product_list(std::span<const Product> products) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (const Product& product : products)
     list.push_back({{"path", product.path}, {"bytes", product.bytes}, {"sha256", product.sha256}});
+  return list;
+}
+
+nlohmann::ordered_json groups_of(const PreparedRun& run) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (std::size_t g = 0; g < run.groups.size(); ++g) {
+    const Scene& scene = *run.groups[g].scene;
+    const Mission& mission = scene.mission();
+    const Boresight camera = camera_boresight(mission);
+    nlohmann::ordered_json numbers = nlohmann::ordered_json::array();
+    for (int c = 0; c < mission.telescope.simulated_cameras; ++c)
+      if (group_of_camera(mission.telescope, c) == static_cast<int>(g)) numbers.push_back(c + 1);
+    list.push_back({{"observing", mission.telescope.groups.cameras[g]},
+                    {"simulated", numbers},
+                    {"axis_ra_deg", camera.axis.ra},
+                    {"axis_dec_deg", camera.axis.dec},
+                    {"roll_deg", camera.roll.value()},
+                    {"stagger_s", mission.simulation.stagger.value()},
+                    {"stars", scene.stars().size()},
+                    {"targets", scene.targets().size()}});
+  }
   return list;
 }
 
@@ -73,15 +95,17 @@ void write_run_record(const ProductFolder& folder, const RunRecord& record) {
   for (const ComponentVersion& component : component_versions()) json["components"][component.name] = component.version;
   json["command_line"] = record.command_line;
   json["threads"] = record.threads;
-  if (record.scene != nullptr) {
-    json["seed"] = record.scene->mission().simulation.seed;
+  if (record.run != nullptr) {
+    const Scene& scene = record.run->scene();
+    json["seed"] = record.run->scene().mission().simulation.seed;
     json["random_numbers"] = "Philox4x32-10, addressed (docs/random-numbers.md)";
-    json["exposures"] = record.scene->mission().simulation.exposures;
-    json["cameras"] = {{"observing", record.scene->mission().telescope.cameras},
-                       {"simulated", record.scene->mission().telescope.simulated_cameras}};
-    json["stars"] = record.scene->stars().size();
-    json["targets"] = record.scene->targets().size();
-    json["pixels"] = record.scene->layout()->size();
+    json["exposures"] = record.run->scene().mission().simulation.exposures;
+    json["cameras"] = {{"observing", record.run->scene().mission().telescope.cameras},
+                       {"simulated", record.run->scene().mission().telescope.simulated_cameras}};
+    json["stars"] = scene.stars().size();
+    json["targets"] = record.run->groups.front().targets.size();
+    json["pixels"] = scene.layout()->size();
+    if (record.run->groups.size() > 1) json["cameras"]["groups"] = groups_of(*record.run);
   }
   if (record.stream != nullptr) {
     const StreamTimings& t = record.stream->timings;
@@ -89,19 +113,19 @@ void write_run_record(const ProductFolder& folder, const RunRecord& record) {
         {"prepare", t.prepare},     {"simulate_cpu", t.simulate},        {"measure_cpu", t.measure},
         {"images_cpu", t.images},   {"statistics", t.statistics},        {"light_curves", t.light_curves},
         {"exposures_wall", t.wall}, {"analyse", record.analyse_seconds}, {"all", record.wall_seconds}};
-    if (record.plan != nullptr) {
-      const double exposures = static_cast<double>(record.scene->mission().simulation.exposures) *
-                               record.scene->mission().telescope.simulated_cameras;
-      json["seconds_per_exposure"] = {{"predicted", record.plan->seconds_per_exposure},
+    if (record.run != nullptr) {
+      const double exposures = static_cast<double>(record.run->scene().mission().simulation.exposures) *
+                               record.run->scene().mission().telescope.simulated_cameras;
+      json["seconds_per_exposure"] = {{"predicted", record.run->plan().seconds_per_exposure},
                                       {"measured", t.simulate / exposures}};
     }
     for (const auto& [name, seconds] : record.stream->effect_seconds) json["effects_cpu_seconds"][name] = seconds;
-    if (record.plan != nullptr)
-      for (const PlannedEffect& effect : record.plan->effects)
+    if (record.run != nullptr)
+      for (const PlannedEffect& effect : record.run->plan().effects)
         if (effect.need.needed)
           json["effects_predicted_seconds"][std::string(effect.effect->spec().name)] =
-              effect.seconds * static_cast<double>(record.scene->mission().simulation.exposures) *
-              record.scene->mission().telescope.simulated_cameras;
+              effect.seconds * static_cast<double>(record.run->scene().mission().simulation.exposures) *
+              record.run->scene().mission().telescope.simulated_cameras;
     json["images_written"] = record.stream->images_written;
     json["electrons_lost_by_blooming"] = record.stream->lost_electrons;
     json["pixels_clipped_by_adc"] = record.stream->clipped_pixels;

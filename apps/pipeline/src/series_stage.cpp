@@ -1,6 +1,7 @@
 #include "series_stage.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "stage_clock.hpp"
 
@@ -12,16 +13,17 @@ constexpr std::size_t kStarsPerTask = 64;  // so that their series in a block fi
 
 }  // namespace
 
-SeriesStage::SeriesStage(std::span<const std::uint32_t> own_flags, int cameras, std::int64_t exposures_per_bin,
+SeriesStage::SeriesStage(std::vector<std::vector<std::uint32_t>> own_flags, std::int64_t exposures_per_bin,
                          std::size_t longest_block, LightCurveWriter* light_curves)
-    : own_flags_(own_flags.begin(), own_flags.end()),
-      cameras_(static_cast<std::size_t>(cameras)),
-      statistics_(own_flags.size(), exposures_per_bin),
+    : own_flags_(std::move(own_flags)),
+      cameras_(own_flags_.size()),
+      targets_(own_flags_.front().size()),
+      statistics_(targets_, exposures_per_bin),
       light_curves_(light_curves),
       longest_block_(longest_block),
-      mean_(cameras > 1 ? longest_block * own_flags.size() : 0),
-      flags_(own_flags.size(), 0),
-      flagged_(own_flags.size(), 0) {}
+      mean_(cameras_ > 1 ? longest_block * targets_ : 0),
+      flags_(targets_, 0),
+      flagged_(targets_, 0) {}
 
 void SeriesStage::begin(const FluxBlock& block) {
   if (light_curves_ != nullptr && !block.empty())
@@ -29,13 +31,13 @@ void SeriesStage::begin(const FluxBlock& block) {
 }
 
 std::size_t SeriesStage::tasks(const FluxBlock& block) const {
-  return block.empty() ? 0 : (own_flags_.size() + kStarsPerTask - 1) / kStarsPerTask;
+  return block.empty() ? 0 : (targets_ + kStarsPerTask - 1) / kStarsPerTask;
 }
 
 void SeriesStage::run(std::size_t task, const FluxBlock& block, StreamTimings& seconds) {
   StageClock clock;
   const std::size_t begin = task * kStarsPerTask;
-  const std::size_t end = std::min(own_flags_.size(), begin + kStarsPerTask);
+  const std::size_t end = std::min(targets_, begin + kStarsPerTask);
   std::vector<float> series;
   block.copy_series(begin, end, series);
   const auto series_of = [&](std::size_t target) {
@@ -67,11 +69,15 @@ void SeriesStage::add_to_mean(std::size_t target, const FluxBlock& block, std::s
 void SeriesStage::end(const FluxBlock& block, std::vector<LightCurveFlag>& flags) {
   if (block.empty()) return;
   exposures_ += static_cast<std::int64_t>(block.count());
-  for (std::size_t target = 0; target < flags_.size(); ++target) flags_[target] |= own_flags_[target];
+  const std::vector<std::uint32_t>& own = own_flags_[static_cast<std::size_t>(block.camera())];
+  for (std::size_t target = 0; target < targets_; ++target) {
+    flags_[target] |= own[target];
+    if (own[target] != 0) flagged_[target] += static_cast<std::int64_t>(block.count());
+  }
   join_flags(flags);
   for (const LightCurveFlag& flag : flags) {
     flags_[flag.star] |= flag.flags;
-    flagged_[flag.star] += flag.exposures;
+    if (own[flag.star] == 0) flagged_[flag.star] += flag.exposures;
   }
   if (light_curves_ == nullptr) return;
   light_curves_->end_block();
@@ -81,10 +87,8 @@ void SeriesStage::end(const FluxBlock& block, std::vector<LightCurveFlag>& flags
 std::vector<double> SeriesStage::flagged_share() const {
   std::vector<double> share;
   share.reserve(flagged_.size());
-  for (std::size_t target = 0; target < flagged_.size(); ++target) {
-    const std::int64_t flagged = own_flags_[target] != 0 ? exposures_ : flagged_[target];
+  for (const std::int64_t flagged : flagged_)
     share.push_back(static_cast<double>(flagged) / static_cast<double>(exposures_));
-  }
   return share;
 }
 

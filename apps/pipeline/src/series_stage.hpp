@@ -18,9 +18,9 @@ namespace astroid {
 /// Every star of a block belongs to one task, so no order of additions depends on the threads.
 class SeriesStage {
  public:
-  /// @param own_flags     that hold for every exposure, of each target.
+  /// @param own_flags     that hold for every exposure: [camera][target].
   /// @param light_curves  the file; null: none.
-  SeriesStage(std::span<const std::uint32_t> own_flags, int cameras, std::int64_t exposures_per_bin,
+  SeriesStage(std::vector<std::vector<std::uint32_t>> own_flags, std::int64_t exposures_per_bin,
               std::size_t longest_block, LightCurveWriter* light_curves);
 
   /// Begins a block; its tasks follow, in any order and several at a time.
@@ -40,14 +40,15 @@ class SeriesStage {
  private:
   void add_to_mean(std::size_t target, const FluxBlock& block, std::span<const float> series);
 
-  std::vector<std::uint32_t> own_flags_;
+  std::vector<std::vector<std::uint32_t>> own_flags_;
   std::size_t cameras_;
+  std::size_t targets_;
   SeriesStatistics statistics_;
   LightCurveWriter* light_curves_;
   std::size_t longest_block_;
   std::vector<double> mean_;  // of the cameras so far, [target][exposure]
   std::vector<std::uint32_t> flags_;
-  std::vector<std::int64_t> flagged_;  // exposures with flags beyond own_flags_
+  std::vector<std::int64_t> flagged_;  // exposures with any flag, of all cameras
   std::int64_t exposures_ = 0;         // of all cameras
 };
 

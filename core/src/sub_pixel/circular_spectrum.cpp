@@ -24,7 +24,7 @@ using Complex = std::complex<double>;
 
 constexpr double kTurnsPerPanel = 6.0;
 
-/// A circular profile cut at a square: both coordinates mirror, so the transform is real and one of cosines.
+/// A circular profile that ends within a square: both coordinates mirror, so the transform is real and one of cosines.
 class CircularSpectrum final : public PsfSpectrum {
  public:
   CircularSpectrum(detail::CircularProfile profile, int reach) : profile_(std::move(profile)), reach_(reach) {}
@@ -98,14 +98,14 @@ class CircularSpectrum final : public PsfSpectrum {
                                                         {inside(upper.x), inside(upper.y)});
                           });
     });
-    // Beyond what a map can hold the step at the reach is left, which falls as 1/band.
+    // Beyond what a map can hold rounding is left.
     constexpr double kMostTurns = 600.0;  // over the reach
     const double measured = std::min(band, kMostTurns / reach_);
     return band_error_->of(*this, measured) * measured / band;
   }
 
   [[nodiscard]] std::string description() const override {
-    return fmt::format("{}, cut {} px from the star", profile_.name, reach_);
+    return fmt::format("{}, faded out {} px from the star", profile_.name, reach_);
   }
 
  private:
@@ -119,9 +119,8 @@ class CircularSpectrum final : public PsfSpectrum {
   mutable std::optional<detail::BandError> band_error_;
 };
 
-std::shared_ptr<const PsfSpectrum> make(detail::CircularProfile profile, const PsfWings& wings) {
-  if (wings.diffusion > 0.0) profile = detail::diffused(profile, wings.diffusion, wings.reach);
-  return std::make_shared<const CircularSpectrum>(std::move(profile), wings.reach);
+std::shared_ptr<const PsfSpectrum> make(const detail::CircularProfile& profile, const PsfWings& wings) {
+  return std::make_shared<const CircularSpectrum>(detail::as_imaged(profile, wings), wings.reach);
 }
 
 }  // namespace

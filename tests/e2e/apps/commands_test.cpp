@@ -123,7 +123,7 @@ TEST_F(Commands, FieldMakesAFieldAndExtendsItAndARunUsesIt) {
 }
 
 TEST_F(Commands, InitWritesAPresetThatIsValid) {
-  for (const std::string name : {"plato", "plato-week", "cmos"}) {
+  for (const std::string name : {"plato", "plato-week", "plato-groups", "cmos"}) {
     const std::string file = name + ".xml";
     EXPECT_THAT(said({"init", name}), HasSubstr("astroid assess " + file));
     EXPECT_EQ(test::read_file(folder_.path() / file), test::read_file(test::source_dir() / "apps/missions" / file));

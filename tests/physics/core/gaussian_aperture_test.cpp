@@ -158,6 +158,11 @@ TEST(OuMeanRms, OfGaplessExposuresIsThatOfOneLongExposure) {
 
 TEST(OuMeanRms, OfFastJitterIsWhiteAndOfSlowJitterDoesNotAverage) {
   EXPECT_NEAR(ou_mean_rms(2.0, Seconds(0.01), {Seconds(25.0), Seconds(0.0), 144}), 2.0 / 12.0, 1e-12);
+  // Far faster than an exposure, where e^(T/tau) is beyond any number: pieces without gaps are still the whole.
+  for (const double tau : {0.2, 0.24, 0.26, 0.01, 1e-6}) {
+    const double parts = ou_mean_rms(1.0, Seconds(tau), {Seconds(25.0), Seconds(25.0), 144});
+    EXPECT_NEAR(parts / ou_mean_rms(1.0, Seconds(tau), {Seconds(3600.0), Seconds(3600.0), 1}), 1.0, 1e-12) << tau;
+  }
   EXPECT_NEAR(ou_mean_rms(2.0, Seconds(1e9), {Seconds(25.0), Seconds(21.0), 144}), 2.0, 1e-5);
 }
 

@@ -111,7 +111,7 @@ TEST(Aberration, MovesStarsAsTheExactFormulaDoes) {
       for (const SkyPosition& star : stars) {
         const PixelPosition p = *camera.to_pixel(star);
         const PixelShift shift =
-            aberration_jacobian(star, pointing.axis, pointing, *camera.attitude_jacobian(star)).displacement(v);
+            aberration_jacobian(star, {pointing.axis, pointing.roll}, *camera.attitude_jacobian(star)).displacement(v);
         before.push_back(p);
         linear.push_back({p.x + shift.dx, p.y + shift.dy});
         exact.push_back(*moved.to_pixel(to_sky_position(apparent(star, v))));
@@ -139,13 +139,14 @@ TEST(Aberration, IsLinearInTheVelocityAndZeroBehindTheCamera) {
   const CameraPointing pointing{.axis = {10.0, 80.0}, .scale = PixelScale(15.0)};
   const SkyProjection camera(pointing);
   const SkyPosition star{30.0, 75.0};
-  const AberrationJacobian j = aberration_jacobian(star, pointing.axis, pointing, *camera.attitude_jacobian(star));
+  const AberrationJacobian j =
+      aberration_jacobian(star, {pointing.axis, pointing.roll}, *camera.attitude_jacobian(star));
   const PixelShift one = j.displacement({1e-5, -2e-5, 3e-5});
   const PixelShift two = j.displacement({2e-5, -4e-5, 6e-5});
   EXPECT_DOUBLE_EQ(two.dx, 2.0 * one.dx);
   EXPECT_DOUBLE_EQ(two.dy, 2.0 * one.dy);
   EXPECT_EQ(j.displacement({}).dx, 0.0);
-  const AberrationJacobian behind = aberration_jacobian({10.0, -60.0}, pointing.axis, pointing, {});
+  const AberrationJacobian behind = aberration_jacobian({10.0, -60.0}, {pointing.axis, pointing.roll}, {});
   EXPECT_EQ(behind.displacement({1e-4, 1e-4, 1e-4}).dx, 0.0);
 }
 

@@ -42,11 +42,7 @@ TEST_P(SkippedBelowThreshold, IsHarmless) {
   ASSERT_FALSE(p.plan->runs(c.effect));
   const std::vector<double> without = fluxes(p, p.plan, 0);
   const std::vector<double> with = fluxes(p, with_effect(*p.plan, c.effect), 0);
-  double worst = 0.0;
-  for (std::size_t i = 0; i < with.size(); ++i) {
-    const double tolerance = p.scene->summary().flux_tolerance(p.scene->stars()[i].electrons);
-    worst = std::max(worst, std::abs(with[i] - without[i]) / tolerance);
-  }
+  const double worst = test::worst_change(*p.scene, without, with);
   std::printf("%s at %.3g: moves a flux by at most %.2f of its tolerance\n", c.effect, strength, worst);
   EXPECT_LE(worst, 1.0);
   EXPECT_GT(worst, 0.0) << "the effect did nothing: was it run?";
@@ -162,11 +158,7 @@ TEST(SkippedBelowThreshold, IntraPixelResponseIsHarmless) {
   ASSERT_TRUE(on.plan->runs("intra-pixel-response"));
   const std::vector<double> without = fluxes(off, off.plan, 0);
   const std::vector<double> with = fluxes(on, on.plan, 0);
-  double worst = 0.0;
-  for (std::size_t i = 0; i < with.size(); ++i) {
-    const double tolerance = off.scene->summary().flux_tolerance(off.scene->stars()[i].electrons);
-    worst = std::max(worst, std::abs(with[i] - without[i]) / tolerance);
-  }
+  const double worst = test::worst_change(*off.scene, without, with);
   std::printf("intra-pixel-response at %.3g: moves a flux by at most %.2f of its tolerance\n", strength, worst);
   EXPECT_LE(worst, 1.0);
   EXPECT_GT(worst, 0.0);
@@ -214,11 +206,8 @@ TEST_P(ReadoutSkippedBelowThreshold, IsHarmless) {
   ASSERT_FALSE(p.plan->runs(c.effect));
   double worst = 0.0;
   for (const std::int64_t exposure : {3, 11}) {  // the draws of both are the same
-    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
-    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, c.effect), exposure);
-    for (std::size_t i = 0; i < with.size(); ++i)
-      worst = std::max(
-          worst, std::abs(with[i] - without[i]) / p.scene->summary().flux_tolerance(p.scene->stars()[i].electrons));
+    worst = std::max(worst, test::worst_change(*p.scene, read_fluxes(p, p.plan, exposure),
+                                               read_fluxes(p, with_effect(*p.plan, c.effect), exposure)));
   }
   std::printf("%s at %.3g: moves a flux by at most %.2f of its tolerance\n", c.effect, strength, worst);
   EXPECT_LE(worst, 1.0);
@@ -241,6 +230,18 @@ INSTANTIATE_TEST_SUITE_P(
                              0.1}),
     [](const testing::TestParamInfo<SkipCase>& parameter) { return test::test_name(parameter.param.effect); });
 
+/// Mean square of what an effect adds to the flux of the faintest star, e-², over the exposures of the run.
+double added_to_the_faintest(const Planned& p, const char* effect) {
+  const std::int64_t exposures = p.scene->mission().simulation.exposures;
+  double square = 0.0;
+  for (std::int64_t exposure = 0; exposure < exposures; ++exposure) {
+    const double without = read_fluxes(p, p.plan, exposure).front();
+    const double with = read_fluxes(p, with_effect(*p.plan, effect), exposure).front();
+    square += (with - without) * (with - without) / static_cast<double>(exposures);
+  }
+  return square;
+}
+
 TEST(SkippedBelowThreshold, PickUpNoiseIsHarmless) {
   const auto set = [](Mission& m, double adu) {
     m.ccd.electronics.pick_up = {.amplitude = adu, .column_frequency = 0.01, .row_frequency = -0.007};
@@ -251,13 +252,7 @@ TEST(SkippedBelowThreshold, PickUpNoiseIsHarmless) {
   set(mission, strength);
   const Planned p = planned(mission);
   ASSERT_FALSE(p.plan->runs("pick-up-noise"));
-  double square = 0.0;
-  for (std::int64_t exposure = 0; exposure < mission.simulation.exposures; ++exposure) {
-    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
-    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, "pick-up-noise"), exposure);
-    const double difference = with.front() - without.front();  // the faintest star
-    square += difference * difference / static_cast<double>(mission.simulation.exposures);
-  }
+  const double square = added_to_the_faintest(p, "pick-up-noise");
   const double variance = p.scene->summary().faintest_target_electrons + p.scene->summary().pixel_noise_variance * 36.0;
   std::printf("pick-up-noise at %.3g ADU: %.2g of the variance of the faintest star\n", strength, square / variance);
   // The mean square of 32 random phases scatters by 12 %.
@@ -273,13 +268,7 @@ TEST(SkippedBelowThreshold, RowOffsetIsHarmless) {
   set(mission, strength);
   const Planned p = planned(mission);
   ASSERT_FALSE(p.plan->runs("row-offset"));
-  double square = 0.0;
-  for (std::int64_t exposure = 0; exposure < mission.simulation.exposures; ++exposure) {
-    const std::vector<double> without = read_fluxes(p, p.plan, exposure);
-    const std::vector<double> with = read_fluxes(p, with_effect(*p.plan, "row-offset"), exposure);
-    const double difference = with.front() - without.front();  // the faintest star
-    square += difference * difference / static_cast<double>(mission.simulation.exposures);
-  }
+  const double square = added_to_the_faintest(p, "row-offset");
   // The variance that 32 exposures show scatters by 25 %.
   EXPECT_LE(square, 2.0 * kVarianceTolerance * p.scene->summary().faintest_target_electrons);
   EXPECT_GT(square, 0.0);

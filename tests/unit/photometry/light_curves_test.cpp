@@ -59,6 +59,34 @@ TEST(LightCurveTime, DoesNotDriftOverYears) {
   }
 }
 
+TEST(LightCurves, OfGroupsHaveTheStarsAndTheTimesOfEachCamera) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "lightcurves.fits").string();
+  auto second = three_stars();
+  for (LightCurveStar& star : second) {
+    star.x += 10.0;
+    star.reference *= 0.5;
+  }
+  LightCurveHeader header = header_of(4, 2);
+  header.group = {0, 1};
+  header.stagger = {0.0, 12.5};
+  LightCurveWriter writer(path, header, three_stars(), {three_stars(), second});
+  write(writer, 1, 0, 4);
+  write(writer, 2, 0, 4);
+  writer.commit();
+  const LightCurveReader reader(path);
+  EXPECT_EQ(reader.contents().header.group, header.group);
+  EXPECT_EQ(reader.contents().header.stagger, header.stagger);
+  const LightCurve one = reader.read("x", 1);
+  const LightCurve two = reader.read("x", 2);
+  const LightCurve mean = reader.read("x", 0);
+  EXPECT_EQ(two.star.x, one.star.x + 10.0);
+  EXPECT_EQ(two.flux[3], second[1].reference * (1.0 + static_cast<double>(deviation(1, 3, 2))));
+  EXPECT_EQ(one.time[1], 25.0 + 10.5);
+  EXPECT_EQ(two.time[1], 25.0 + 10.5 + 12.5);
+  EXPECT_EQ(mean.time[1], 25.0 + 10.5 + 6.25);
+}
+
 TEST(LightCurves, ReadBackWhatWasWrittenInBlocks) {
   const test::TemporaryFolder folder;
   const std::string path = (folder.path() / "lightcurves.fits").string();

@@ -54,7 +54,7 @@ struct NoiseByCause {
 
 /// Predicted noise of one target.
 struct PredictedNoise {
-  double exposure = 0.0;           ///< NSR of one exposure of one camera, jitter included
+  double exposure = 0.0;           ///< NSR of one exposure of one camera, jitter included; mean where they differ
   NoiseByCause bin;                ///< N cameras, ppm
   double bin_simulated = 0.0;      ///< total with the n simulated cameras, ppm: beside what was measured
   double bin_within = 0.0;         ///< what the scatter within bins should give with the n simulated cameras, ppm
@@ -62,9 +62,22 @@ struct PredictedNoise {
   double bin_within_common = 0.0;  ///< the same of bin_within: jitter faster than a bin
 };
 
+/// What motion does to a flux: variances relative to that of the target.
+struct MotionNoise {
+  double jitter_camera = 0.0;    ///< light across the edge of the aperture, in one exposure of one camera
+  double jitter_exposure = 0.0;  ///< the same in one exposure of all cameras: it is common to them
+  double jitter_bin = 0.0;       ///< and in the mean over a bin
+  double prnu_exposure = 0.0;    ///< unequal pixels, in one exposure of one camera
+  double prnu_bin = 0.0;         ///< in a bin of one camera
+};
+/// Where all cameras move alike.
+MotionNoise motion_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup);
+
 /// Predicts the noise of a target: independent terms fall as 1 / sqrt(cameras * exposures), jitter by the motion
 /// that is left in the mean and not with cameras, PRNU with jitter by the motion and with cameras.
 PredictedNoise predict_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup);
+/// The same of the mean of groups: of mean_estimator() and mean_motion_noise().
+PredictedNoise predict_mean_noise(const StarEstimator& estimator, const MotionNoise& motion, const RunSetup& setup);
 
 /// Differences of magnitude, each a cause: measured - true = contamination + aperture_loss + smearing + residual.
 struct MagnitudeCauses {
@@ -112,6 +125,9 @@ struct TargetMetrics {
 /// The row of a target as far as it is known beforehand.
 TargetMetrics predict_target(const TruthStar& truth, const StarEstimator& estimator, const StarMotion& motion,
                              const RunSetup& setup);
+/// The same of the mean of groups: of mean_truth(), mean_estimator() and predict_mean_noise().
+TargetMetrics predict_mean_target(const TruthStar& truth, const StarEstimator& estimator, const PredictedNoise& noise,
+                                  const RunSetup& setup);
 
 /// Adds what was measured.
 /// @param reference  e- per exposure, the flux that the series is relative to.

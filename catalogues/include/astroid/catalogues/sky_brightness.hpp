@@ -46,7 +46,4 @@ ElectronsPerSecond mean_background_rate(const Mission& mission);
 /// Background and dark current of one exposure with that light, and the noise of reading it.
 PixelNoise expected_pixel_noise(const Mission& mission);
 
-/// Middle of the run, since its start.
-Seconds middle_of_run(const SimulationSettings& simulation);
-
 }  // namespace astroid

@@ -45,4 +45,12 @@ struct Cadence {
 /// @param rms  stationary, any unit; tau > 0. @complexity O(exposures). @source UhlenbeckOrnstein1930.
 double ou_mean_rms(double rms, Seconds tau, const Cadence& cadence);
 
+/// Covariance of the mean over such a series with that over the same series begun `lag` later, in units of the
+/// variance of the process: what cameras that read out one after the other share of it.
+///
+/// Exact; ou_mean_rms()² at no lag. Exposures may overlap: the covariance of means over T at a distance u is
+/// (h(u + T) - 2 h(u) + h(u - T)) tau² / T², h(t) = e^(-|t|/tau) + |t|/tau.
+/// @complexity O(exposures). @source UhlenbeckOrnstein1930 (F111).
+double ou_mean_covariance(Seconds tau, const Cadence& cadence, Seconds lag);
+
 }  // namespace astroid

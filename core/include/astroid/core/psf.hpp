@@ -108,7 +108,7 @@ std::shared_ptr<const PixelPsf> make_gaussian_psf(double sigma);
 /// What a PSF with wings leaves out, and what the detector does to it.
 struct PsfWings {
   static constexpr int kLongestReach = 90;
-  int reach = 30;          ///< px: half the side of the square beyond which light is left out, 2 .. kLongestReach
+  int reach = 30;          ///< px: where light ends, faded out over the last 6 px (F120); 2 .. kLongestReach
   double diffusion = 0.0;  ///< px: rms of the charge diffusion, 0 .. 3
 };
 
@@ -116,7 +116,8 @@ struct PsfWings {
 /// library, four-point interpolation in between, with more phases within 8 px than beyond (renderer `prf`).
 ///
 /// Normalised on infinite support: (1 + r²/alpha²)^(1-beta) of the light is farther than r from the star, and what is
-/// beyond the reach is left out, not redistributed.
+/// beyond the reach is left out, not redistributed. So that light ends in no step, which the sub-pixel map could not hold,
+/// it fades out over the last 6 px (F120), or over half of a reach below 12 px.
 /// @param fwhm      px, 0.2 .. 20; alpha = fwhm / (2 sqrt(2^(1/beta) - 1))
 /// @param beta      more than 1, at most 100
 /// @param accuracy  allowed to the interpolation; decides the number of phases.

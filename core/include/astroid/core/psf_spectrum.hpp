@@ -53,20 +53,17 @@ std::shared_ptr<const PsfSpectrum> make_gaussian_spectrum(double sigma);
 /// @complexity  sample(): n_kx n_x n_y + n_kx n_ky n_y complex products for a table of n_x by n_y samples
 std::shared_ptr<const PsfSpectrum> make_table_spectrum(const PsfTable& table);
 
-/// Moffat's profile out to the reach of its wings, as make_moffat_psf() has it: the cosine transform of the light in
-/// the square, charge diffusion included, by Gauss-Legendre quadrature as fine as the frequencies ask for.
+/// Moffat's profile faded out towards the reach of its wings (F120), as make_moffat_psf() has it, charge diffusion
+/// included: its cosine transform by Gauss-Legendre quadrature as fine as the frequencies ask for.
 ///
-/// What is farther than the reach is left out, so light ends in a step there. Its spectrum falls as 1/k, and
-/// error_beyond(), which is measured as for a table, with it: by step × width / (pi² band) of a square at the border.
-/// Where steps are 1e-7 per px² and less, as with wings that are cut far out, that is no limit.
-/// @accuracy  1e-12, 1e-8 with diffusion (tests: CircularSpectrum.OfAMoffatProfileIsABesselFunction,
-///            CircularSpectrum.OfDiffusedLightIsTheProduct)
+/// error_beyond() is measured as for a table.
+/// @accuracy  1e-12 (tests: CircularSpectrum.OfAMoffatProfileIsABesselFunction,
+///            CircularSpectrum.IsTheFourierTransformOfTheFadedLight, CircularSpectrum.OfDiffusedLightIsTheProduct)
 /// @complexity  sample(): n_kx n² + n_kx n_ky n products, n = 4 reach × (largest k)
 /// @throws InputError as make_moffat_psf()
 std::shared_ptr<const PsfSpectrum> make_moffat_spectrum(double fwhm, double beta, const PsfWings& wings);
 
-/// The same for the diffraction pattern of make_airy_psf(). Without the cut it would end at 1 / (lambda/D).
-/// @accuracy  1e-12 (test: CircularSpectrum.IsTheFourierTransformOfTheLightInTheSquare)
+/// The same for the diffraction pattern of make_airy_psf(). Without the fade it would end at 1 / (lambda/D).
 std::shared_ptr<const PsfSpectrum> make_airy_spectrum(double lambda_over_d, double obscuration, const PsfWings& wings);
 
 /// A PSF that varies over the field, in Fourier space: the light of a star is a sum over members with weights that

@@ -15,6 +15,15 @@ struct Direction {
   double z = 0.0;
 };
 
+[[nodiscard]] inline double dot(const Direction& a, const Direction& b) {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+
+/// a u + b v.
+[[nodiscard]] inline Direction combine(double a, const Direction& u, double b, const Direction& v) {
+  return {a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
+}
+
 struct SineCosine {
   double sine = 0.0;
   double cosine = 1.0;
@@ -25,6 +34,12 @@ struct SineCosine {
 [[nodiscard]] SineCosine sine_cosine(Degrees angle);
 
 [[nodiscard]] Direction to_direction(SkyPosition position);
+
+/// The unit vectors towards east and north at a place of the sky.
+struct Horizon {
+  Direction east, north;
+};
+[[nodiscard]] Horizon horizon(SkyPosition place);
 
 /// @param direction  of any length but 0.  @returns ra in [0, 360), 0 at the poles of a vector with x = y = 0.
 [[nodiscard]] SkyPosition to_sky_position(Direction direction);

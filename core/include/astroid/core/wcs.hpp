@@ -8,6 +8,8 @@
 #include <string_view>
 #include <vector>
 
+#include "astroid/core/attitude.hpp"
+#include "astroid/core/boresight.hpp"
 #include "astroid/core/distortion.hpp"
 #include "astroid/core/fits_card.hpp"
 #include "astroid/core/geometry.hpp"
@@ -31,6 +33,8 @@ struct CameraPointing {
   std::shared_ptr<const Distortion> distortion{};
   /// Pixels that headers have to describe; asked for where a distortion is given.
   Rectangle detector{};
+  /// About whose axes yaw, pitch and roll turn; nothing: those of this camera.
+  std::optional<Boresight> spacecraft{};
 };
 
 /// The zenithal projections of FITS WCS that a pointing may use: TAN, SIN, ARC, STG, ZEA.  @source Calabretta2002 §5.1
@@ -45,23 +49,6 @@ inline constexpr double kPixelGrid = 0x1p-24;
 
 /// How far the coordinates of a FITS header may be from the simulated ones, px.
 inline constexpr double kHeaderTolerance = 1e-3;
-
-/// How far a star moves on the detector when the spacecraft turns by a small angle; px per arcsec.
-///
-/// Yaw turns the camera about its own y axis, pitch about its x axis, roll about the optical axis; the signs are those
-/// by which the *stars* move: on the axis yaw moves them by +1/scale along x and pitch by +1/scale along y, roll moves
-/// them counter-clockwise, from +x to +y. For any projection and place in the field; to first order in the angles.
-struct AttitudeJacobian {
-  double dx_dyaw = 0.0;
-  double dx_dpitch = 0.0;
-  double dx_droll = 0.0;
-  double dy_dyaw = 0.0;
-  double dy_dpitch = 0.0;
-  double dy_droll = 0.0;
-};
-
-/// The step to which the members of AttitudeJacobian are rounded, px/arcsec: hides the C library's last bits likewise.
-inline constexpr double kJacobianGrid = 0x1p-32;
 
 /// A celestial coordinate system of an image, computed by WCSLIB. Immutable; copies share it.
 /// @thread safe: every thread works on its own copy of WCSLIB's structure, which is not thread-safe when shared.

@@ -7,6 +7,10 @@
 // the mean of the cameras; left out where there is only one, which then stands for it … FLAGS      table: CAMERA, STAR,
 // CADENCENO, EXPOSURES, FLAGS, where flags are set that STARS does not have, in so
 //              many exposures in a row from CADENCENO on
+//
+// Where groups of cameras see the stars differently, STARS is of their mean and tables STARS1 … before FLAGS are of
+// each group. The cards GROUP and STAGGER of a camera's image say which is its own, and how long after the start of a
+// cycle its exposures begin; TIME is the mean of all cameras.
 #pragma once
 
 #include <cstddef>
@@ -50,11 +54,14 @@ struct LightCurveHeader {
   double cycle = 0.0;                ///< s
   double exposure_time = 0.0;        ///< s
   std::vector<std::string> history;  ///< the plan, line by line
+  std::vector<int> group{};          ///< of each camera, from 0; empty: all cameras are alike
+  std::vector<double> stagger{};     ///< s, of each camera after the start of a cycle; empty: none
 };
 
 /// Mid-exposure of exposure k, seconds since the start of the first: exact in k, never summed up.
+/// @param camera  1 … cameras; 0: the mean of all.
 /// @accuracy 1e-7 s over 4.5 years.
-[[nodiscard]] double mid_exposure(const LightCurveHeader& header, std::int64_t exposure);
+[[nodiscard]] double mid_exposure(const LightCurveHeader& header, std::int64_t exposure, int camera = 0);
 
 /// The same as BJD_TDB - 2457000, d. @accuracy 5e-8 s (the last bit of a day number near 5000).
 [[nodiscard]] double mid_exposure_bjd(const LightCurveHeader& header, std::int64_t exposure);
@@ -66,7 +73,9 @@ struct LightCurveHeader {
 /// @throws EnvironmentError(path, cause), from every member function.  @thread one at a time, but for write_star()
 class LightCurveWriter {
  public:
-  LightCurveWriter(const std::string& path, const LightCurveHeader& header, std::span<const LightCurveStar> stars);
+  /// @param groups  the stars as each group of cameras sees them, where there are several.
+  LightCurveWriter(const std::string& path, const LightCurveHeader& header, std::span<const LightCurveStar> stars,
+                   std::vector<std::vector<LightCurveStar>> groups = {});
   ~LightCurveWriter();
   LightCurveWriter(const LightCurveWriter&) = delete;
   LightCurveWriter& operator=(const LightCurveWriter&) = delete;
@@ -101,6 +110,7 @@ class LightCurveWriter {
 struct LightCurveContents {
   LightCurveHeader header;
   std::vector<LightCurveStar> stars;
+  std::vector<std::vector<LightCurveStar>> groups{};  ///< the same as each group of cameras sees them; or empty
 };
 /// @throws InputError when it is not a light-curve file; EnvironmentError when it cannot be read.
 [[nodiscard]] LightCurveContents read_light_curve_contents(const std::string& path);

@@ -34,12 +34,11 @@ struct AberrationJacobian {
 /// about no other axis: with n the star, b the boresight and v the velocity, v (1 - n·b) - (n·v)(n - b).
 ///
 /// First order in v: what is left out is v² = 1e-8 of the distance to the boresight.
-/// @param star, boresight  directions without aberration.
-/// @param pointing  of the camera, whose axis may be another than the boresight.
-/// @param motion    of the star: how pixels answer to small rotations of the camera.
-/// @returns zero for a star 90 deg or more from the camera's axis.
+/// @param star       direction without aberration.
+/// @param boresight  of the spacecraft; the camera's axis may be another.
+/// @param motion     of the star: how its pixel answers to small rotations about the spacecraft's axes.
+/// @returns zero for a star 90 deg or more from the boresight.
 /// @source Kovalevsky2004
-AberrationJacobian aberration_jacobian(SkyPosition star, SkyPosition boresight, const CameraPointing& pointing,
-                                       const AttitudeJacobian& motion);
+AberrationJacobian aberration_jacobian(SkyPosition star, const Boresight& boresight, const AttitudeJacobian& motion);
 
 }  // namespace astroid

@@ -8,31 +8,13 @@
 #include <string>
 #include <vector>
 
-#include "astroid/core/geometry.hpp"
+#include "astroid/core/attitude.hpp"
 #include "astroid/core/mission.hpp"
 #include "astroid/core/random.hpp"
 #include "astroid/core/wcs.hpp"
 #include "astroid/sim/jitter_spectrum.hpp"
 
 namespace astroid {
-
-/// Deviation from the nominal pointing, arcsec.
-struct Attitude {
-  double yaw = 0.0, pitch = 0.0, roll = 0.0;
-};
-
-/// Displacement of a star whose Jacobian is given. @returns px
-PixelShift displacement(const AttitudeJacobian& jacobian, const Attitude& attitude);
-
-/// Variance of yaw, pitch and roll, arcsec², where the axes are independent.
-struct AttitudeVariance {
-  double yaw = 0.0, pitch = 0.0, roll = 0.0;
-};
-
-/// Covariance of yaw, pitch and roll, arcsec².
-struct AttitudeCovariance {
-  double yaw_yaw = 0.0, yaw_pitch = 0.0, yaw_roll = 0.0, pitch_pitch = 0.0, pitch_roll = 0.0, roll_roll = 0.0;
-};
 
 /// Mean of a few attitudes, and their covariance about it.
 struct AttitudeMoments {
@@ -42,11 +24,7 @@ struct AttitudeMoments {
 /// @param attitude  not empty; every one counts the same.
 AttitudeMoments attitude_moments(std::span<const Attitude> attitude);
 
-/// The covariance on the detector of a star whose Jacobian is given. @returns px²
-MotionCovariance motion_covariance(const AttitudeJacobian& jacobian, const AttitudeCovariance& attitude);
-MotionCovariance motion_covariance(const AttitudeJacobian& jacobian, const AttitudeVariance& attitude);
-
-/// Where the spacecraft points while exposures are taken.
+/// Where the spacecraft points while exposures are taken: exposure k from k cycles + the stagger of its camera on.
 class AttitudeModel {
  public:
   AttitudeModel() = default;
@@ -66,6 +44,8 @@ class AttitudeModel {
   [[nodiscard]] virtual AttitudeVariance variance() const = 0;
   /// Variance of the mean over one exposure, and of the mean of `exposures` successive exposure means.
   [[nodiscard]] virtual AttitudeVariance variance_of_mean(std::int64_t exposures) const = 0;
+  /// Covariance, axis by axis, of that mean with the one of exposures that begin `lag` later. variance_of_mean() at 0.
+  [[nodiscard]] virtual AttitudeVariance covariance_of_mean(std::int64_t exposures, Seconds lag) const = 0;
   /// Number of equal steps in an exposure that keeps the rms error of its mean attitude below `fraction` of the rms.
   [[nodiscard]] virtual int steps_for(double fraction) const = 0;
   [[nodiscard]] virtual std::string description() const = 0;
@@ -85,10 +65,15 @@ std::shared_ptr<const AttitudeModel> make_still_attitude();
 
 /// Ornstein–Uhlenbeck jitter by its exact update, x' = a x + s sqrt(1 - a²) n with a = exp(-dt/tau), from a stationary
 /// start, one independent process an axis (F29).
+///
+/// The process goes from instant to instant of all cameras, so those that read out at other times see the same path:
+/// each draw is addressed by the number of its instant.
+/// @param staggers  s, of every group of cameras; simulation.stagger is one of them. Empty: that alone.
 /// @source UhlenbeckOrnstein1930
 std::shared_ptr<const AttitudeModel> make_red_noise_attitude(const JitterSettings& jitter,
                                                              const SimulationSettings& simulation,
-                                                             const RandomStream& stream);
+                                                             const RandomStream& stream,
+                                                             std::span<const double> staggers = {});
 
 /// Gaussian jitter with a given power spectral density, the axes independent, as a pure function of absolute time: any
 /// instant is the same in a longer run, in a run that is resumed, and for any number of steps. Resolves spectra to 1/16

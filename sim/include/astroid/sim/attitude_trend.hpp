@@ -61,7 +61,7 @@ AttitudeTrend repointing_error(const SatelliteSettings& satellite, const Simulat
 /// Both. They must be of the same run.
 AttitudeTrend operator+(const AttitudeTrend& a, const AttitudeTrend& b);
 
-/// Noise about a trend. variance() and variance_of_mean() are those of the noise.
+/// Noise about a trend. variance(), variance_of_mean() and covariance_of_mean() are those of the noise.
 std::shared_ptr<const AttitudeModel> make_drifting_attitude(std::shared_ptr<const AttitudeModel> noise,
                                                             AttitudeTrend trend, const SimulationSettings& simulation);
 

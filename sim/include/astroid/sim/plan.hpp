@@ -79,8 +79,10 @@ struct Plan {
 Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch);
 
 /// Decides everything from the scene and the accuracy asked for.
-/// @param costs  of this machine, for the predicted times.
-Plan make_plan(const Scene& scene, const CostFactors& costs = {});
+/// @param costs                 of this machine, for the predicted times.
+/// @param least_attitude_steps  in an exposure. Cameras that share a random path of the attitude must all have the
+/// same.
+Plan make_plan(const Scene& scene, const CostFactors& costs = {}, int least_attitude_steps = 1);
 
 /// What of CostFactors an effect's time belongs to: its name, or how the plan makes the noiseless image.
 std::string cost_part(const PlannedEffect& effect, const Plan& plan);

@@ -27,6 +27,10 @@ inline std::filesystem::path week_preset() {
   return source_dir() / "apps/missions/plato-week.xml";
 }
 
+inline std::filesystem::path groups_preset() {
+  return source_dir() / "apps/missions/plato-groups.xml";
+}
+
 /// A data folder with (empty) files where the PLATO preset looks for its catalogues, and one `stars.csv`.
 class FolderWithCatalogue {
  public:

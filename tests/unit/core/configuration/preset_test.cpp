@@ -114,6 +114,30 @@ TEST(CmosPreset, HasTheDetectorOfItsSource) {
   EXPECT_EQ(cmos.ccd.pixel_scale, plato.ccd.pixel_scale);
 }
 
+// Rauer et al. 2014, Exp. Astron. 38, 249: four groups with a line of sight offset by 9.2 deg; a cycle of 25 s between
+// them.
+TEST(GroupsPreset, HasTheCamerasOfPlatoInFourGroups) {
+  const ConfigurationSurroundings shipped{.overrides = {}, .data_folders = {test::source_dir()}};
+  const Mission groups = read_configuration(test::groups_preset(), shipped).mission;
+  EXPECT_EQ(groups.telescope.cameras, 24);
+  EXPECT_EQ(groups.telescope.groups.cameras, (std::vector<int>{6, 6, 6, 6}));
+  EXPECT_EQ(groups.telescope.groups.tilt, (std::vector<double>{9.2, 9.2, 9.2, 9.2}));
+  EXPECT_EQ(groups.telescope.groups.stagger, (std::vector<double>{0.0, 6.25, 12.5, 18.75}));
+  // What a camera is apart from its group is what plato.xml says.
+  Mission plato = read_configuration(plato_preset(), shipped).mission;
+  EXPECT_EQ(groups.satellite, plato.satellite);
+  EXPECT_EQ(groups.psf, plato.psf);
+  EXPECT_EQ(groups.field, plato.field);
+  EXPECT_EQ(groups.photometry, plato.photometry);
+  plato.ccd.axis_x = groups.ccd.axis_x;
+  plato.ccd.axis_y = groups.ccd.axis_y;
+  plato.ccd.sub_x0 = groups.ccd.sub_x0;
+  plato.ccd.sub_y0 = groups.ccd.sub_y0;
+  plato.ccd.sub_columns = groups.ccd.sub_columns;
+  plato.ccd.sub_rows = groups.ccd.sub_rows;
+  EXPECT_EQ(groups.ccd, plato.ccd);
+}
+
 class Preset : public testing::TestWithParam<std::filesystem::path> {};
 
 TEST_P(Preset, FindsItsCataloguesInTheSourceTree) {
@@ -142,7 +166,9 @@ TEST_P(Preset, NamesTheLineOfEveryParameterItGives) {
   EXPECT_GE(from_file, 40);
 }
 
-INSTANTIATE_TEST_SUITE_P(Shipped, Preset, testing::Values(plato_preset(), test::week_preset(), test::cmos_preset()));
+INSTANTIATE_TEST_SUITE_P(Shipped, Preset,
+                         testing::Values(plato_preset(), test::week_preset(), test::groups_preset(),
+                                         test::cmos_preset()));
 
 }  // namespace
 }  // namespace astroid

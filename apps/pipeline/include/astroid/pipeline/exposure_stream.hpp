@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -40,7 +41,7 @@ struct StreamTimings {
 /// What a stream leaves besides its files.
 struct StreamResult {
   std::vector<SeriesSummary> series;    ///< of each target, mean of the simulated cameras
-  std::vector<double> reference;        ///< flux the series are relative to, e- per exposure
+  std::vector<double> reference;        ///< flux the series are relative to, e- per exposure, mean of the cameras
   std::vector<std::uint32_t> flags;     ///< measurement_flag bits seen in any exposure, of each target
   std::vector<double> flagged_share;    ///< share of exposures of a target with any flag
   Image<float, unit::Adu> first_frame;  ///< exposure 0 of camera 0, largest region
@@ -51,7 +52,15 @@ struct StreamResult {
   std::int64_t images_written = 0;
 };
 
-/// Runs all exposures of all simulated cameras.
+/// Cameras that see the same: what, how, and measured by what.
+struct StreamGroup {
+  std::shared_ptr<const Scene> scene;
+  std::shared_ptr<const Plan> plan;
+  std::span<const StarEstimator> estimators;  ///< of the targets, which are the same stars in every group
+  double share = 1.0;                         ///< of the group in all cameras
+};
+
+/// Runs all exposures of all simulated cameras, numbered through the groups by group_of_camera().
 ///
 /// Workers make and measure batches of exposures, each with a state and frames of its own. Fluxes collect in a block;
 /// while the next block is filled, the stars of the complete one go to the statistics and the light-curve file, every
@@ -59,8 +68,11 @@ struct StreamResult {
 /// Memory: two blocks and, with several cameras, sums for their mean, 300 MB in all for up to 800,000 targets; and for
 /// each worker a state and the frames of a batch, 64 MB of them at most but at least one frame
 /// (test: StreamMemory.DoesNotGrowWithTheExposures).
-/// @param estimators  of the targets; empty: images only.
 /// @throws EnvironmentError when a product cannot be written.
+StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamOptions& options);
+
+/// The same where all cameras are alike.
+/// @param estimators  of the targets; empty: images only.
 StreamResult stream_exposures(const std::shared_ptr<const Scene>& scene, const std::shared_ptr<const Plan>& plan,
                               const std::vector<StarEstimator>& estimators, const StreamOptions& options);
 

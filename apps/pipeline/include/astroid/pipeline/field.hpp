@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "astroid/analysis/truth.hpp"
@@ -24,7 +25,8 @@ void write_truth(const std::filesystem::path& path, const Scene& scene);
 
 /// Writes, where stars vary, variables.csv (id, place, electrons at relative flux 1, mean relative flux of the run,
 /// model) and variability.csv (time in s since the start, then each star's relative flux averaged over the exposure).
-void write_variable_truth(const std::filesystem::path& folder, const Scene& scene);
+/// @param suffix  of both names, before ".csv".
+void write_variable_truth(const std::filesystem::path& folder, const Scene& scene, const std::string& suffix = "");
 
 /// What the ground believes of a scene: here, the truth.
 std::vector<FieldStar> field_stars(const Scene& scene);

@@ -16,6 +16,7 @@ struct FocalPlaneOptions {
   int across = 3, down = 3;         ///< sub-fields along columns and rows
   int side = 200;                   ///< of each, px
   std::optional<double> magnitude;  ///< reference magnitude; without: the median of the targets
+  int group = 1;                    ///< of cameras, from 1, of a mission that has several
 };
 
 struct FocalPlaneResult {
@@ -26,7 +27,7 @@ struct FocalPlaneResult {
 
 /// Simulates and measures square sub-fields spread evenly over the detector, each with what it has of PSF, distortion,
 /// vignetting and charge transfer at its place, and writes the maps through them into a folder of products.
-/// @throws InputError when no sub-field has a target.
+/// @throws InputError when no sub-field has a target, or the mission has no such group.
 FocalPlaneResult map_focal_plane(const ResolvedConfiguration& configuration, const RunOptions& options,
                                  const FocalPlaneOptions& maps);
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "astroid/analysis/motion.hpp"
+#include "astroid/pipeline/run.hpp"
 #include "astroid/sim/scene.hpp"
 
 namespace astroid {
@@ -16,5 +17,19 @@ std::vector<StarMotion> star_motions(const Scene& scene, std::span<const std::si
 
 /// The same of each target. @returns shape (scene.targets())
 std::vector<StarMotion> target_motions(const Scene& scene);
+
+/// What cameras that read out at different times share of the attitude.
+class AttitudeSharing {
+ public:
+  /// @param run  must outlive this.
+  explicit AttitudeSharing(const PreparedRun& run);
+  /// How a target moves in the cameras of every group with how it moves in those of every other.
+  /// @returns shape (groups, groups), row by row
+  [[nodiscard]] std::vector<CrossMotion> of_target(std::size_t target) const;
+
+ private:
+  const PreparedRun& run_;
+  std::vector<AttitudeVariance> exposure_, bin_;  // [group][group], covariances
+};
 
 }  // namespace astroid

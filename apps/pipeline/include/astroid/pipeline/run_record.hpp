@@ -7,14 +7,14 @@
 
 #include "astroid/core/product_folder.hpp"
 #include "astroid/pipeline/exposure_stream.hpp"
+#include "astroid/pipeline/run.hpp"
 
 namespace astroid {
 
 struct RunRecord {
   std::vector<std::string> command_line;
   int threads = 1;
-  const Scene* scene = nullptr;
-  const Plan* plan = nullptr;
+  const PreparedRun* run = nullptr;
   const StreamResult* stream = nullptr;
   double analyse_seconds = 0.0;
   double wall_seconds = 0.0;

@@ -18,6 +18,7 @@ struct SimulationSettings {
   std::int64_t exposures = 1;
   Seconds cycle{25.0};
   Seconds exposure_time{21.0};
+  Seconds stagger{0.0};  ///< from the start of a cycle to that of its exposure; of a camera group, by group_mission()
   std::string start = "2027-01-01T00:00:00";  ///< TDB, ISO 8601
   double start_mjd = 61406.0;                 ///< the same as MJD (TDB), filled by the reader
   Renderer renderer = Renderer::kAuto;

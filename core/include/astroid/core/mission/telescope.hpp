@@ -49,11 +49,29 @@ struct GhostSettings {
   friend bool operator==(const GhostSettings&, const GhostSettings&) = default;
 };
 
+/// Cameras that look, read out or have aged otherwise than others. Every list but the first is empty, or says one
+/// number of each group.
+struct CameraGroups {
+  std::vector<int> cameras;         ///< of each group; empty: all cameras are alike
+  std::vector<double> tilt;         ///< deg, from the spacecraft's pointing to the group's axis
+  std::vector<double> azimuth;      ///< deg, of the tilt, from +x to +y
+  std::vector<double> roll;         ///< deg, about the group's axis
+  std::vector<double> stagger;      ///< s
+  std::vector<double> offset_x;     ///< px, added to the pixel where the axis falls
+  std::vector<double> offset_y;     ///< px
+  std::vector<double> throughput;   ///< relative to ThroughputSettings::beginning_of_life
+  std::vector<double> end_of_life;  ///< in place of ThroughputSettings::end_of_life
+
+  friend bool operator==(const CameraGroups&, const CameraGroups&) = default;
+};
+
 struct TelescopeSettings {
   Magnitude zero_point{20.62};  ///< magnitude that gives one detected electron per second
   std::string zero_point_passband = "P";
   int cameras = 24;           ///< that observe the field
   int simulated_cameras = 1;  ///< n <= cameras; independent terms are scaled to `cameras`
+  CameraGroups groups;
+  int group = -1;  ///< the group that sees this mission, set by group_mission(); -1: not one of several
   ThroughputSettings throughput;
   DistortionSettings distortion;
   VignettingSettings vignetting;

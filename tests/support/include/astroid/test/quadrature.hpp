@@ -54,8 +54,8 @@ struct SurfaceBrightness {
 
 /// A PSF given by its formula, smooth everywhere.
 SurfaceBrightness smooth_brightness(Density density);
-/// The same out to a square of half-width `reach` px about the star, and nothing beyond.
-SurfaceBrightness cut_brightness(Density density, long double reach);
+/// The same faded out towards `reach` px from the star (F120), and nothing beyond.
+SurfaceBrightness faded_brightness(Density density, long double reach);
 /// What a PSF table means: its running integral, known at the edges of the samples, is a natural cubic spline along
 /// both axes, and the surface brightness is its mixed derivative, 0 outside the table. Written down again from that
 /// definition in 80-bit arithmetic, by second derivatives instead of B-splines.

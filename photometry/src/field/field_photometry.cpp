@@ -1,0 +1,159 @@
+#include "astroid/photometry/field_photometry.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "astroid/core/error.hpp"
+#include "astroid/core/photometric.hpp"
+#include "astroid/photometry/estimator.hpp"
+#include "field/field_fit.hpp"
+#include "field/hidden_stars.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr int kLargestStamp = 40;      // px, half-side
+constexpr double kBlendedShare = 0.5;  // of the information about a flux that neighbours leave: error √2 larger
+constexpr double kQuantisation = 1.0 / 12.0;
+
+void check_settings(const FieldPhotometrySettings& settings) {
+  if (settings.threshold > 0.0 && settings.rounds > 0) return;
+  throw InputError(Problem{.parameter = "threshold, rounds",
+                           .value = fmt::format("{}, {}", settings.threshold, settings.rounds),
+                           .expected = "both more than 0",
+                           .message = "nothing can be detected"});
+}
+
+// @returns false when no pixel can be used.
+bool fill_pixels(const Frame& frame, const BackgroundMap& mesh, detail::FieldPixels& pixels) {
+  const double gain = frame.header.gain.value();
+  const double bias = frame.header.bias.value();
+  const auto values = frame.pixels.view(0);
+  const auto flags = frame.flags.view(0);
+  const Rectangle& area = values.area();
+  constexpr unsigned kUnusable = 0xFFU & ~(pixel_flag::kTruth | pixel_flag::kShortRamp);
+  std::vector<double> level(static_cast<std::size_t>(area.nx));
+  bool any = false;
+  for (int j = 0; j < area.ny; ++j) {
+    mesh.level_row(area.y0 + j, level);
+    const auto row = values.row(area.y0 + j);
+    const auto flag = flags.row(area.y0 + j);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const double sky = gain * (level[i] - bias);
+      pixels.sky.row(j)[i] = std::isfinite(sky) ? static_cast<float>(sky) : 0.0F;
+      if (!std::isfinite(row[i]) || (flag[i] & kUnusable) != 0U) continue;
+      pixels.electrons.row(j)[i] = static_cast<float>(gain * (static_cast<double>(row[i]) - bias));
+      pixels.usable.row(j)[i] = 1.0F;
+      any = true;
+    }
+  }
+  const double sky = std::max(0.0, gain * (mesh.median_level() - bias));
+  const double readout = frame.header.readout_noise.value();
+  const double stated = readout * readout + gain * gain * kQuantisation;
+  const double measured = gain * gain * mesh.median_rms() * mesh.median_rms();
+  // A sky that was subtracted before still has its noise. Crowding alone does not double what the header states.
+  constexpr double kDoubtful = 2.0;
+  pixels.read_variance = stated;
+  if (measured > kDoubtful * (stated + sky) || readout == 0.0) pixels.read_variance = std::max(stated, measured - sky);
+  return any;
+}
+
+std::uint32_t flags_of(const Frame& frame, const detail::ModelStar& star, int core) {
+  const auto flags = frame.flags.view(0);
+  const auto values = frame.pixels.view(0);
+  const Rectangle& area = flags.area();
+  const int x0 = area.x0 + static_cast<int>(std::floor(star.x + 0.5));
+  const int y0 = area.y0 + static_cast<int>(std::floor(star.y + 0.5));
+  std::uint32_t result = 0;
+  for (int y = y0 - core; y <= y0 + core; ++y) {
+    for (int x = x0 - core; x <= x0 + core; ++x) {
+      if (!area.contains(x, y)) {
+        result |= measurement_flag::kEdge;
+        continue;
+      }
+      const unsigned f = flags.at(x, y);
+      if ((f & (pixel_flag::kFullWell | pixel_flag::kAdcSaturated)) != 0U) result |= measurement_flag::kSaturated;
+      if ((f & pixel_flag::kBad) != 0U || !std::isfinite(values.at(x, y))) result |= measurement_flag::kBadPixel;
+    }
+  }
+  return result;
+}
+
+double core_chi2(const detail::FieldSolver& field, const detail::ModelStar& star, int core) {
+  const int x0 = static_cast<int>(std::floor(star.x + 0.5)) - core;
+  const int y0 = static_cast<int>(std::floor(star.y + 0.5)) - core;
+  double chi2 = 0.0;
+  int count = 0;
+  for (int j = 0; j <= 2 * core; ++j) {
+    const float* w = field.weight().at(x0, y0 + j);
+    const float* r = field.residual().at(x0, y0 + j);
+    for (int i = 0; i <= 2 * core; ++i) {
+      if (!(w[i] > 0.0F)) continue;
+      chi2 += static_cast<double>(r[i] * r[i] * w[i]);
+      ++count;
+    }
+  }
+  return count > 0 ? chi2 / count : kNaN;
+}
+
+}  // namespace
+
+std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjection* sky, const PixelPsf& psf,
+                                             const FieldPhotometrySettings& settings) {
+  check_settings(settings);
+  ASTROID_CHECK_EQ(frame.pixels.layout().regions().size(), std::size_t{1});
+  const Rectangle area = frame.pixels.layout().regions()[0];
+  ASTROID_CHECK_EQ(area.x0, 0);  // the PSF may vary over the frame, and is asked for in its pixels
+  ASTROID_CHECK_EQ(area.y0, 0);
+  const detail::PsfReach reach(psf, {area.x0 + 0.5 * area.nx, area.y0 + 0.5 * area.ny}, kLargestStamp);
+  constexpr int kMargin = 8;  // px: stars may lie a little outside, and vectors are read whole
+  const detail::PaddedPlane empty(area.nx, area.ny, reach.most() + kMargin);
+  detail::FieldPixels pixels{empty, empty, empty, 0.0};
+  if (!fill_pixels(frame, BackgroundMap(frame, 0, settings.mesh), pixels)) return {};
+  const detail::FieldFitSettings fit_settings{settings.threshold, settings.rounds, settings.mesh.cell};
+  detail::FieldFit fit(psf, reach, pixels, fit_settings);
+  fit.run();
+  detail::FieldSolver& field = fit.solver();
+  const detail::HiddenStars hidden(field, fit.filter(), settings.threshold);
+  detail::LocalFit local(field);
+  std::vector<SourceMeasurement> sources;
+  for (std::size_t i = 0; i < field.stars().size(); ++i) {
+    const detail::ModelStar& star = field.stars()[i];
+    const detail::StarCovariance c = local.covariance(i);
+    const double error = std::sqrt(c.covariance[0] * (1.0 + hidden.excess(star.flux)));
+    if (c.degenerate || !(star.flux >= settings.threshold * error)) continue;
+    SourceMeasurement s;
+    s.id = fmt::format("{}", sources.size());
+    s.x = area.x0 + star.x;
+    s.y = area.y0 + star.y;
+    s.ra = kNaN;
+    s.dec = kNaN;
+    if (sky != nullptr) {
+      const SkyPosition direction = sky->to_sky({s.x, s.y});
+      s.ra = direction.ra;
+      s.dec = direction.dec;
+    }
+    s.flux = star.flux;
+    s.flux_err = error;
+    s.snr = star.flux / error;
+    s.background = field.sky_at(star.x, star.y);
+    s.chi2 = core_chi2(field, star, reach.core());
+    s.flags = flags_of(frame, star, reach.core());
+    if (c.share < kBlendedShare) s.flags |= measurement_flag::kBlended;
+    s.mag = kNaN;
+    s.mag_err = kNaN;
+    if (const auto mag = magnitude_of(Electrons(s.flux) / frame.header.exposure_time, settings.zero_point)) {
+      s.mag = mag->value();
+      s.mag_err = magnitude_error(s.snr).value();
+    }
+    sources.push_back(std::move(s));
+  }
+  return sources;
+}
+
+}  // namespace astroid
