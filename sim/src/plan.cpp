@@ -150,10 +150,12 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
   return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 
-std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
+/// @param motion  whether what moves stars smoothly counts
+std::int64_t plan_epochs(const Scene& scene, const Plan& plan, bool motion) {
   double steady = std::numeric_limits<double>::infinity();
   for (const PlannedEffect& planned : plan.effects)
-    if (planned.need.needed) steady = std::min(steady, planned.need.steady.value());
+    if (planned.need.needed && (motion || planned.need.motion == SlowMotion{}))
+      steady = std::min(steady, planned.need.steady.value());
   if (std::isinf(steady)) return 0;
   // Whatever the length of the run, so that a longer run begins with the shorter one.
   constexpr double kMost = 1e9;
@@ -162,9 +164,16 @@ std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch) {
+double Plan::place_in_epoch(std::int64_t exposure) const {
+  if (epoch_exposures <= 0 || knobs.polynomial.highest_power_of_time() == 0) return 0.0;
+  const std::int64_t within = exposure - epoch(exposure) * epoch_exposures;
+  return static_cast<double>(2 * within - (epoch_exposures - 1)) / static_cast<double>(epoch_exposures);
+}
+
+Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch, double place) {
   const std::int64_t length = std::max<std::int64_t>(1, plan.epoch_exposures);
-  const double middle = static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1);
+  const double middle =
+      static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1) + 0.5 * place * static_cast<double>(length);
   const SimulationSettings& simulation = scene.mission().simulation;
   const Seconds time = simulation.stagger + (middle * simulation.cycle + 0.5 * simulation.exposure_time);
   Conditions conditions;
@@ -185,7 +194,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs, int least_attitude_
   }
   plan.reads = scene.mission().simulation.type == DetectorType::kCmos ? scene.mission().cmos.reads : 1;
   plan.layout = plan_layout(scene, plan);
-  plan.epoch_exposures = plan_epochs(scene, plan);
+  plan.epoch_exposures = plan_epochs(scene, plan, true);
   // Images that are used a few times only are rendered for each exposure instead.
   const bool steady = plan.epoch_exposures == 0 || plan.epoch_exposures >= kFewExposures;
   plan.still = !moves && steady;
@@ -199,6 +208,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs, int least_attitude_
   plan.knobs.stamps = plan_stamps(scene, kAccuracyShares.stamps, plan.stamp_error);
   if (moves) plan_jitter(scene, kAccuracyShares.jitter, plan);
   if (moves && steady) plan_polynomial(scene, kAccuracyShares.jitter, plan);
+  plan_slow_motion(scene, kAccuracyShares.jitter, plan_epochs(scene, plan, false), plan);
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
   note_coarse_psf(scene, plan);
