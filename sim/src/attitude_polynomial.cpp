@@ -83,7 +83,8 @@ std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> deriva
           const AttitudePowers powers{i, j, k, l};
           double bound = derivative_of(derivatives, powers, reach.slow) * term(powers, r);
           for (const int p : powers) bound /= kFactorials[p];
-          // A line through the points 0 and 1 is off by twice Taylor's term at -1, where times go and jitter seldom does.
+          // A line through the points 0 and 1 is off by twice Taylor's term at -1, where times go and jitter seldom
+          // does.
           if (l == 2) bound *= 2.0;
           if (i + j + k + l == 0 || !(bound > 0.0)) continue;
           candidates.push_back({powers, bound});

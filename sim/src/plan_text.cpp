@@ -64,15 +64,18 @@ std::string to_text(const Plan& plan, const Scene& scene) {
     out += fmt::format(
         "  jitter    {}, {} terms, their means taken over {} step(s) of an exposure: at most {:.2g} ppm of the\n"
         "            brightest target; {} fixed maps, {:.3g} MiB for all workers\n",
-        plan.knobs.polynomial.highest_power_of_time() > 0 ? "polynomial in attitude and time" : to_string(plan.knobs.jitter),
+        plan.knobs.polynomial.highest_power_of_time() > 0 ? "polynomial in attitude and time"
+                                                          : to_string(plan.knobs.jitter),
         terms, plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s), terms,
         maps_bytes(terms, static_cast<double>(plan.layout->size())) / kMebi);
     if (const int power = plan.knobs.polynomial.highest_power_of_time(); power > 0)
       out += fmt::format(
-          "  slow      stars move by themselves within epochs of {} exposures ({:.3g} h): powers of time up to {} among\n"
+          "  slow      stars move by themselves within epochs of {} exposures ({:.3g} h): powers of time up to {} "
+          "among\n"
           "            those terms, from images rendered at fixed times of the epoch\n",
           plan.epoch_exposures,
-          static_cast<double>(plan.epoch_exposures) * scene.mission().simulation.cycle.value() / kSecondsPerHour, power);
+          static_cast<double>(plan.epoch_exposures) * scene.mission().simulation.cycle.value() / kSecondsPerHour,
+          power);
   } else {
     out += fmt::format("  jitter    {} with {} step(s) in an exposure: at most {:.2g} ppm of the brightest target\n",
                        to_string(plan.knobs.jitter), plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s));

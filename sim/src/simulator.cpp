@@ -81,9 +81,9 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
         if (treatment == JitterTreatment::kSubSteps)
           series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
         if (treatment == JitterTreatment::kPolynomial) {
-          const std::vector<float> weights = exposure_weights(
-              plan.knobs.polynomial, exposure,
-              plan.place_in_epoch(static_cast<std::int64_t>(series->moments.size()) - 1));
+          const std::vector<float> weights =
+              exposure_weights(plan.knobs.polynomial, exposure,
+                               plan.place_in_epoch(static_cast<std::int64_t>(series->moments.size()) - 1));
           series->weights.insert(series->weights.end(), weights.begin(), weights.end());
         }
       });
@@ -222,9 +222,8 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.frame.header = header_;
   set_time(*scene_, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);
-  state.conditions = plan_->epoch_exposures > 0
-                         ? conditions_of(*plan_, *scene_, epoch, plan_->place_in_epoch(exposure))
-                         : constant_;
+  state.conditions =
+      plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch, plan_->place_in_epoch(exposure)) : constant_;
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
     if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
       take({Act::kApply, i}, state, whole_);

@@ -93,7 +93,8 @@ void expect_within_share(bool jitter) {
     }
   }
   std::printf(
-      "%zu terms, up to power %d of time, epochs of %lld exposures: %.3f of what is allowed, while fluxes change by %.2g\n",
+      "%zu terms, up to power %d of time, epochs of %lld exposures: %.3f of what is allowed, while fluxes change by "
+      "%.2g\n",
       plan->knobs.polynomial.terms.size(), plan->knobs.polynomial.highest_power_of_time(),
       static_cast<long long>(length), worst, moved);
   EXPECT_LT(worst, 0.3);  // the share of motion

@@ -76,7 +76,8 @@ TEST(AttitudePolynomial, GivesBackWhatIsAPolynomialOfItsTerms) {
     const std::vector<double> terms = mean_of_terms(p, centre, std::array{where});
     double value = 0.0;
     for (std::size_t t = 0; t < n; ++t)
-      for (std::size_t k = 0; k < n; ++k) value += terms[t] * inverse[t * n + k] * polynomial_value(p, points[k].attitude);
+      for (std::size_t k = 0; k < n; ++k)
+        value += terms[t] * inverse[t * n + k] * polynomial_value(p, points[k].attitude);
     EXPECT_NEAR(value, polynomial_value(p, where), 1e-11);
   }
 }

@@ -49,7 +49,8 @@ struct AttitudeReach {
 ///
 /// A term of total power n changes a flux by at most D_n r1^i r2^j r3^k / (i! j! k!), with D_n the largest n-th
 /// derivative of the logarithm's argument (PsfSensitivity::derivatives) and r the reach of each axis. With power l of
-/// time D_n becomes rate^l / l! × the sum over q of S(l, q) D_(n+q) px^q, S Stirling's numbers of the second kind (F121).
+/// time D_n becomes rate^l / l! × the sum over q of S(l, q) D_(n+q) px^q, S Stirling's numbers of the second kind
+/// (F121).
 /// @param derivatives  D_n, index n, px^-n.  @param left_out  [out] the bound on what is missing.
 /// @returns no term at all when `most` terms are not enough.
 std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> derivatives, const AttitudeReach& reach,
