@@ -43,8 +43,8 @@ void refuse_unusable(const PsfTable& table, double total) {
 }
 
 // Coefficients c[-1 … n+1] of natural cubic B-splines through the values at the knots 0 … n, in place: of `lanes`
-// splines at once, the values of a knot side by side. The values stand at 1 … n+1 of n + 3 knots that are `stride` apart.
-// Natural: c[-1] - 2 c[0] + c[1] = 0, so c[0] is the value itself.
+// splines at once, the values of a knot side by side. The values stand at 1 … n+1 of n + 3 knots that are `stride`
+// apart. Natural: c[-1] - 2 c[0] + c[1] = 0, so c[0] is the value itself.
 void interpolate(double* knots, std::size_t count, std::size_t stride, std::size_t lanes) {
   const std::size_t last = count - 2;  // where the last value stands
   const auto knot = [&](std::size_t k) { return knots + k * stride; };

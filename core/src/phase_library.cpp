@@ -55,8 +55,8 @@ std::vector<double> PhaseLibrary::exact_images(const FluxSpline& spline, std::sp
   // Shifts along x in groups, whose edges share the cache lines of the coefficients.
   constexpr std::size_t kMostInGroup = 8;
   constexpr std::size_t kGroupBytes = 4UL * 1024UL * 1024UL;
-  const std::size_t group = std::clamp<std::size_t>(
-      kGroupBytes / (spline.coefficient_rows() * x_count * sizeof(double)), 1, kMostInGroup);
+  const std::size_t group =
+      std::clamp<std::size_t>(kGroupBytes / (spline.coefficient_rows() * x_count * sizeof(double)), 1, kMostInGroup);
   std::vector<FluxSpline::Edge> edges;
   std::vector<double> rows;
   std::vector<double> below;
@@ -87,8 +87,8 @@ std::vector<double> PhaseLibrary::exact_images(const FluxSpline& spline, std::sp
           const double* strip = &below[(p - p0) * x_count];
           double* row = &images[((q * n + p) * ny + j / cells) * nx];
           for (std::size_t i = 0; i < nx * cells; ++i)
-            row[i / cells] += response_.at(static_cast<int>(i % cells), static_cast<int>(j % cells)) *
-                              (strip[i + 1] - strip[i]);
+            row[i / cells] +=
+                response_.at(static_cast<int>(i % cells), static_cast<int>(j % cells)) * (strip[i + 1] - strip[i]);
         }
         std::swap(below, above);
       }

@@ -82,8 +82,8 @@ CircularProfile airy_profile(double lambda_over_d, double obscuration, const Psf
 
 namespace {
 
-/// The profile convolved with a Gaussian of rms `sigma` px at distance r. The trapezium rule converges beyond all orders
-/// for what is smooth: with 1.43 nodes per sigma the Gaussian leaves 1e-17, with 5 per scale the profile 1e-14.
+/// The profile convolved with a Gaussian of rms `sigma` px at distance r. The trapezium rule converges beyond all
+/// orders for what is smooth: with 1.43 nodes per sigma the Gaussian leaves 1e-17, with 5 per scale the profile 1e-14.
 double diffused(const CircularProfile& profile, double sigma, double r) {
   constexpr double kPerSigma = 1.43;
   constexpr double kPerScale = 5.0;

@@ -150,9 +150,7 @@ class ProfilePsf final : public PixelPsf {
     const double width = kSigma * profile.scale;
     const double per_sigma = det::sqrt(det::sqrt(kSplineError * response.depth() / (kSplineShare * accuracy.relative)));
     const int samples = static_cast<int>(std::ceil(per_sigma / width));
-    const auto make = [&](int n) {
-      return ScaledLibrary::make(profile, half_width, n, 2, response, samples);
-    };
+    const auto make = [&](int n) { return ScaledLibrary::make(profile, half_width, n, 2, response, samples); };
     if (phases > 0) return make(std::min(phases, kMostCorePhases));
     int n = kFewestPhases;
     ScaledLibrary core = make(n);
@@ -163,8 +161,7 @@ class ProfilePsf final : public PixelPsf {
     return core;
   }
 
-  void make_wings(const detail::CircularProfile& profile, const PsfAccuracy& accuracy,
-                  const PixelResponse& response) {
+  void make_wings(const detail::CircularProfile& profile, const PsfAccuracy& accuracy, const PixelResponse& response) {
     const double pixels = 4.0 * reach_ * reach_;
     for (int n = kFewestPhases;; n *= 2) {
       // Between the edges of samples the spline errs by a ninth of what four points between phases do, the same way.
@@ -244,14 +241,15 @@ class ProfilePsf final : public PixelPsf {
 std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings,
                                                 const PsfAccuracy& accuracy, int phases,
                                                 const PixelResponse& response) {
-  return std::make_shared<const ProfilePsf>(detail::as_imaged(detail::moffat_profile(fwhm, beta, wings), wings), wings, accuracy, phases,
-                                            response);
+  return std::make_shared<const ProfilePsf>(detail::as_imaged(detail::moffat_profile(fwhm, beta, wings), wings), wings,
+                                            accuracy, phases, response);
 }
 
 std::shared_ptr<const PixelPsf> make_airy_psf(double lambda_over_d, double obscuration, const PsfWings& wings,
                                               const PsfAccuracy& accuracy, int phases, const PixelResponse& response) {
-  return std::make_shared<const ProfilePsf>(detail::as_imaged(detail::airy_profile(lambda_over_d, obscuration, wings), wings), wings, accuracy,
-                                            phases, response);
+  return std::make_shared<const ProfilePsf>(
+      detail::as_imaged(detail::airy_profile(lambda_over_d, obscuration, wings), wings), wings, accuracy, phases,
+      response);
 }
 
 }  // namespace astroid

@@ -8,8 +8,7 @@
 
 namespace astroid::detail {
 
-RadialTable::RadialTable(const std::function<double(double r)>& function, double end, double panel)
-    : end2_(end * end) {
+RadialTable::RadialTable(const std::function<double(double r)>& function, double end, double panel) : end2_(end * end) {
   const auto count = static_cast<std::size_t>(std::max(1.0, std::ceil(end / panel)));
   per_panel_ = static_cast<double>(count) / end;
   std::array<double, kTerms> places{};

@@ -80,11 +80,11 @@ std::string describe_pixels(const Scene& scene, const Plan& plan) {
 void note_coarse_psf(const Scene& scene, Plan& plan) {
   const double share = kAccuracyShares.psf * scene.summary().accuracy;
   if (plan.renderer_error <= share) return;
-  plan.approximations.push_back(
-      fmt::format("the accuracy asked for is not kept: the PSF errs by {:.2g} ppm, more than its share of {:.2g} ppm; {}",
-                  1e6 * plan.renderer_error, 1e6 * share,
-                  scene.sub_pixel_renderer() != nullptr ? "Simulation/SubPixels can be larger"
-                                                        : "more PSF/Phases or the renderer subpixel may keep it"));
+  plan.approximations.push_back(fmt::format(
+      "the accuracy asked for is not kept: the PSF errs by {:.2g} ppm, more than its share of {:.2g} ppm; {}",
+      1e6 * plan.renderer_error, 1e6 * share,
+      scene.sub_pixel_renderer() != nullptr ? "Simulation/SubPixels can be larger"
+                                            : "more PSF/Phases or the renderer subpixel may keep it"));
 }
 
 /// Rounding is noise of gain / sqrt(12) only where something blurs its steps (N25).

@@ -82,7 +82,8 @@ Optics optics(std::int64_t number) {
   if (number == 1) return {everywhere(make_airy_spectrum(1.5, 0.3, {})), {.accuracy = 3e-7}};
   if (number == 2) return {everywhere(make_airy_spectrum(1.5, 0.3, {})), {.accuracy = 3e-9}};
   std::vector<FieldPsfTable> tables;
-  for (const PixelPosition place : {PixelPosition{0.0, 0.0}, PixelPosition{kSide, 0.0}, PixelPosition{0.0, kSide}, PixelPosition{kSide, kSide}})
+  for (const PixelPosition place :
+       {PixelPosition{0.0, 0.0}, PixelPosition{kSide, 0.0}, PixelPosition{0.0, kSide}, PixelPosition{kSide, kSide}})
     tables.push_back({place, make_gaussian_table(0.6 + 1e-3 * (place.x + place.y), 1e-6)});
   return {make_field_spectrum(tables, Pixels(0.0)), {.accuracy = 3e-7}};
 }

@@ -76,9 +76,8 @@ TEST(Moffat, IsNormalisedOnInfiniteSupport) {
   const double inside =
       sum_of(render(*make_moffat_psf(1.4, 2.5, {.reach = kReach}, 1e-6), {0.0, 0.0}, {-15, -15, 31, 31}));
   const test::Density density = moffat_density(1.4L, 2.5L, kReach);
-  const double exact =
-      static_cast<double>(test::integrate([&](long double r) { return 2.0L * kPiLong * r * density(r, 0.0L); }, 0.0L,
-                                          kReach, 1e-12L));
+  const double exact = static_cast<double>(
+      test::integrate([&](long double r) { return 2.0L * kPiLong * r * density(r, 0.0L); }, 0.0L, kReach, 1e-12L));
   EXPECT_NEAR(inside, exact, 2e-7);
   EXPECT_LT(exact, 0.9995);
   // Outside a circle falls (1 + r²/alpha²)^(1-beta): between where the light fades and where it ends.

@@ -2,8 +2,8 @@
 //
 // A target with neighbours down to a hundredth of its flux and up to ten times as bright, at random positions, in
 // squares of 1 to 5 pixels around it. The error is that of the light in the square, neighbours included, and has to
-// stay below the accuracy asked for, relative to that light: 1 ppm, and 0.01 ppm, which of an Airy pattern the sub-pixel
-// renderer alone is asked for: its wings have more rings than a library has phases.
+// stay below the accuracy asked for, relative to that light: 1 ppm, and 0.01 ppm, which of an Airy pattern the
+// sub-pixel renderer alone is asked for: its wings have more rings than a library has phases.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -116,8 +116,8 @@ struct PsfWings {
 /// library, four-point interpolation in between, with more phases within 8 px than beyond (renderer `prf`).
 ///
 /// Normalised on infinite support: (1 + r²/alpha²)^(1-beta) of the light is farther than r from the star, and what is
-/// beyond the reach is left out, not redistributed. So that light ends in no step, which the sub-pixel map could not hold,
-/// it fades out over the last 6 px (F120), or over half of a reach below 12 px.
+/// beyond the reach is left out, not redistributed. So that light ends in no step, which the sub-pixel map could not
+/// hold, it fades out over the last 6 px (F120), or over half of a reach below 12 px.
 /// @param fwhm      px, 0.2 .. 20; alpha = fwhm / (2 sqrt(2^(1/beta) - 1))
 /// @param beta      more than 1, at most 100
 /// @param accuracy  allowed to the interpolation; decides the number of phases.
