@@ -172,8 +172,8 @@ double Plan::place_in_epoch(std::int64_t exposure) const {
 
 Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch, double place) {
   const std::int64_t length = std::max<std::int64_t>(1, plan.epoch_exposures);
-  const double middle =
-      static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1) + 0.5 * place * static_cast<double>(length);
+  const double middle = static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1) +
+                        0.5 * place * static_cast<double>(length);
   const SimulationSettings& simulation = scene.mission().simulation;
   const Seconds time = simulation.stagger + (middle * simulation.cycle + 0.5 * simulation.exposure_time);
   Conditions conditions;
