@@ -92,9 +92,10 @@ TEST(PixelResponse, IsFoldedIntoAnAiryPattern) {
 TEST(PixelResponse, IsFoldedIntoAPsfThatVariesOverTheField) {
   // Between three places the blend is linear in the star's.
   constexpr double kSide = 12.0;
-  const std::vector<FieldPsfTable> tables = {{{0.0, 0.0}, test::gaussian_psf_table(0.6, 24.0, 5.0)},
-                                             {{kSide, 0.0}, test::gaussian_psf_table(0.8, 24.0, 6.0)},
-                                             {{0.0, kSide}, test::gaussian_psf_table(0.7, 24.0, 5.5)}};
+  std::vector<FieldPsfTable> tables;
+  tables.push_back({{0.0, 0.0}, test::gaussian_psf_table(0.6, 24.0, 5.0)});
+  tables.push_back({{kSide, 0.0}, test::gaussian_psf_table(0.8, 24.0, 6.0)});
+  tables.push_back({{0.0, kSide}, test::gaussian_psf_table(0.7, 24.0, 5.5)});
   const auto parts = [&](PixelPosition star) {
     const double x = star.x / kSide;
     const double y = star.y / kSide;
