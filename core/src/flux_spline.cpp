@@ -42,14 +42,20 @@ void refuse_unusable(const PsfTable& table, double total) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-// Coefficients c[-1 … n+1] of natural cubic B-splines through the values at the knots 0 … n, in place: of `lanes`
-// splines at once, the values of a knot side by side. The values stand at 1 … n+1 of n + 3 knots that are `stride`
-// apart. Natural: c[-1] - 2 c[0] + c[1] = 0, so c[0] is the value itself.
-void interpolate(double* knots, std::size_t count, std::size_t stride, std::size_t lanes) {
-  const std::size_t last = count - 2;  // where the last value stands
-  const auto knot = [&](std::size_t k) { return knots + k * stride; };
+// Many splines in memory: the values of a knot side by side, knots `stride` apart.
+struct Splines {
+  double* first;
+  std::size_t knots, stride, lanes;
+};
+
+// Coefficients c[-1 … n+1] of natural cubic B-splines through the values at the knots 0 … n, in place: the values stand
+// at 1 … n+1 of n + 3 knots. Natural: c[-1] - 2 c[0] + c[1] = 0, so c[0] is the value itself.
+void interpolate(const Splines& splines) {
+  const std::size_t lanes = splines.lanes;
+  const std::size_t last = splines.knots - 2;  // where the last value stands
+  const auto knot = [&](std::size_t k) { return splines.first + k * splines.stride; };
   // Thomas' algorithm for c[k-1] + 4 c[k] + c[k+1] = 6 y[k] between the known ends.
-  std::vector<double> pivots(count, 0.0);
+  std::vector<double> pivots(splines.knots, 0.0);
   for (std::size_t k = 2; k < last; ++k) {
     const double pivot = 1.0 / (4.0 - pivots[k - 1]);
     pivots[k] = pivot;
@@ -92,8 +98,8 @@ FluxSpline::FluxSpline(const PsfTable& table)
       corners[i] = row.value();
     }
   }
-  for (std::size_t j = 1; j < ny_ + 2; ++j) interpolate(&coefficients_[j * stride], stride, 1, 1);
-  interpolate(coefficients_.data(), ny_ + 3, stride, stride);
+  for (std::size_t j = 1; j < ny_ + 2; ++j) interpolate({&coefficients_[j * stride], stride, 1, 1});
+  interpolate({coefficients_.data(), ny_ + 3, stride, stride});
 }
 
 FluxSpline::Edge FluxSpline::edge(double offset, double centre, std::size_t samples) const {

@@ -30,8 +30,8 @@ PhaseLibrary::PhaseLibrary(const FluxSpline& spline, int phases, PixelResponse r
       response_(std::move(response)),
       x_(extent(spline.lower().x, spline.upper().x)),
       y_(extent(spline.lower().y, spline.upper().y)) {
-  std::vector<double> shifts;
-  for (int p = 0; p < phases; ++p) shifts.push_back(static_cast<double>(p) * (1.0 / phases));
+  std::vector<double> shifts(static_cast<std::size_t>(phases));
+  for (std::size_t p = 0; p < shifts.size(); ++p) shifts[p] = static_cast<double>(p) * (1.0 / phases);
   images_ = exact_images(spline, shifts);
 }
 
@@ -196,8 +196,12 @@ void PhaseLibrary::integrate_gradient(PixelPosition star, Rectangle box, std::sp
 }
 
 Rectangle PhaseLibrary::interior() const {
-  constexpr int kSteps = 4;  // px: the border, and as far as the light of the taps reaches across it
-  return {x_.first + kSteps, y_.first + kSteps, x_.size - 2 * kSteps, y_.size - 2 * kSteps};
+  constexpr int kSteps = 4;   // px: the border, and as far as the light of the taps reaches across it
+  constexpr int kFewest = 4;  // px that are judged of a small table too: the star's, wherever it is in it
+  const auto steps = [&](int size) { return std::clamp((size - kFewest) / 2, 0, kSteps); };
+  const int x = steps(x_.size);
+  const int y = steps(y_.size);
+  return {x_.first + x, y_.first + y, x_.size - 2 * x, y_.size - 2 * y};
 }
 
 double PhaseLibrary::measured_error(const FluxSpline& spline, const Judged& judged) const {
@@ -207,8 +211,11 @@ double PhaseLibrary::measured_error(const FluxSpline& spline, const Judged& judg
   constexpr int kSmallestSquare = 2;
   constexpr int kLargestSquare = 3;
   const int positions = std::min(phases_, x_.size * y_.size > kLarge ? kFewerPositions : kMostPositions);
-  std::vector<double> shifts;
-  for (int k = 0; k < positions; ++k) shifts.push_back((k * phases_ / positions + 0.5) / phases_);
+  std::vector<double> shifts(static_cast<std::size_t>(positions));
+  for (int k = 0; k < positions; ++k) {
+    const int phase = k * phases_ / positions;
+    shifts[static_cast<std::size_t>(k)] = (phase + 0.5) / phases_;
+  }
   const std::vector<double> exact = exact_images(spline, shifts);
   const Rectangle box{x_.first, y_.first, x_.size, y_.size};
   const Rectangle outer = intersect(box, judged.outer);
