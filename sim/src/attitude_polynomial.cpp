@@ -35,7 +35,8 @@ double term(const AttitudePowers& powers, const std::array<double, kAxes>& x) {
 /// The derivative of the order that the powers of the attitude add up to, and by time as often as its power says:
 /// Faà di Bruno's formula for a displacement px (e^(rate t) - 1), whose derivatives are the largest that there may be.
 double derivative_of(std::span<const double> derivatives, const AttitudePowers& powers, const SlowMotion& slow) {
-  const auto order = static_cast<std::size_t>(powers[0] + powers[1] + powers[2]);
+  std::size_t order = 0;
+  for (std::size_t axis = 0; axis < kTime; ++axis) order += static_cast<std::size_t>(powers[axis]);
   const auto l = static_cast<std::size_t>(powers[kTime]);
   if (l == 0) return derivatives[order];
   std::vector<double> stirling(l + 1, 0.0);  // S(l, q), from S(0, 0) on
