@@ -146,9 +146,10 @@ double map_seconds(const Plan& plan, const Scene& scene, std::span<const Rectang
   }
   const double share = pixels / std::max(1.0, static_cast<double>(scene.detector().size()));
   const double deposits = share * static_cast<double>(scene.summary().stars) * renderings(plan);
-  const double nodes = static_cast<double>(map.map_size());
+  const auto maps = static_cast<double>(map.maps());
+  const double nodes = maps * static_cast<double>(map.map_size());
   const double cells = static_cast<double>(map.cells()) * map.cells();
-  return kNanosecond * (tiles * nodes * kMapNode + deposits * kDeposit + pixels * cells * kMapCell);
+  return kNanosecond * (tiles * nodes * kMapNode + maps * deposits * kDeposit + pixels * cells * kMapCell);
 }
 
 /// Whether the noiseless image is recalled rather than rendered.

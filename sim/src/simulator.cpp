@@ -84,7 +84,9 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
     if (treatment == JitterTreatment::kSubSteps)
       series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
     if (treatment == JitterTreatment::kPolynomial) {
-      const std::vector<float> weights = exposure_weights(plan.knobs.polynomial, exposure);
+      const auto number = static_cast<std::int64_t>(series->moments.size() - 1) / series->bands;
+      const std::vector<float> weights =
+          exposure_weights(plan.knobs.polynomial, exposure, plan.place_in_epoch(number));
       series->weights.insert(series->weights.end(), weights.begin(), weights.end());
     }
   };
@@ -282,7 +284,8 @@ void Simulator::begin_light(std::int64_t exposure, ExposureState& state) const {
   state.frame.header = header_;
   set_time(*scene_, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);
-  state.conditions = plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch) : constant_;
+  state.conditions =
+      plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch, plan_->place_in_epoch(exposure)) : constant_;
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
     if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
       take({Act::kApply, i}, state, whole_);
@@ -294,7 +297,10 @@ void Simulator::begin_light(std::int64_t exposure, ExposureState& state) const {
   if (moving_ == nullptr) return;
   const std::size_t maps = plan_->knobs.polynomial.terms.size() - 1;
   const auto bands = static_cast<std::size_t>(attitude_->bands);
-  const RenderAt at = [&](const Attitude& attitude) { return render(attitude, conditions); };
+  const bool in_time = plan_->knobs.polynomial.highest_power_of_time() > 0;
+  const RenderAt at = [&](const MotionPoint& point) {
+    return render(point.attitude, in_time ? conditions_of(*plan_, *scene_, epoch, point.time) : conditions);
+  };
   for (std::size_t band = 0; band < bands; ++band) {
     const std::size_t window = static_cast<std::size_t>(exposure) * bands + band;
     const Attitude& mean = bands > 1 ? attitude_->moments[window].mean : state.attitude.mean;

@@ -114,7 +114,7 @@ TEST(PixelResponse, ChangesFluxWithThePlaceAsFirstOrderSays) {
   // A star of a narrow PSF sees the sensitivity at its place.
   const PixelResponse response = cosine_response(32, 0.1);
   const double sigma = 0.05;
-  const auto psf = make_prf_psf(make_gaussian_table(sigma, 1e-6), 1e-5, 0, response);
+  const auto psf = make_prf_psf(make_gaussian_table(sigma, 1e-6), PsfAccuracy(1e-4, 1.0), 0, response);
   const double centre = 1.0 / (1.0 - 0.05) / (1.0 - 0.05);  // of a profile with mean 1 - depth/2 along each axis
   for (const double x : {0.0, 0.1, 0.25, 0.4}) {
     const auto p = prf(*psf, {x, 0.0});

@@ -55,16 +55,17 @@ TEST(PhaseLibrary, HasTheErrorsThatWereMeasuredIndependently) {
                         Case{16, 0.5, 1.29, 1.95}, Case{16, 0.6, 0.76, 1.58}, Case{16, 1.0, 0.19, 0.32},
                         Case{32, 0.5, 0.081, 0.12}, Case{32, 0.6, 0.050, 0.095}, Case{32, 1.0, 0.012, 0.020}}) {
     // 64 samples per pixel: the spline is not in the way.
-    const auto psf = make_prf_psf(test::gaussian_psf_table(c.sigma, 64.0, 6.0), 1.0, c.phases);
+    const PsfAccuracy of_the_star(1.0, 1.0);
+    const auto psf = make_prf_psf(test::gaussian_psf_table(c.sigma, 64.0, 6.0), of_the_star, c.phases);
     const Errors errors = aperture_errors(*psf, *make_gaussian_psf(c.sigma));
     constexpr double kFactor = 1.5;
     EXPECT_LT(1e6 * errors.rms, c.rms * kFactor) << c.phases << " phases, sigma " << c.sigma;
     EXPECT_GT(1e6 * errors.rms, c.rms / kFactor) << c.phases << " phases, sigma " << c.sigma;
     EXPECT_LT(1e6 * errors.worst, c.worst * kFactor) << c.phases << " phases, sigma " << c.sigma;
     EXPECT_GT(1e6 * errors.worst, c.worst / kFactor) << c.phases << " phases, sigma " << c.sigma;
-    // What the renderer says of itself is the worst there is.
+    // What the renderer says of itself is the worst there is, in squares of 2 px too and wherever they lie.
     EXPECT_GT(psf->approximation_error(), 0.7 * errors.worst);
-    EXPECT_LT(psf->approximation_error(), 2.0 * errors.worst);
+    EXPECT_LT(psf->approximation_error(), 3.0 * errors.worst);
   }
 }
 
