@@ -28,14 +28,6 @@ SkyUnderStar ImageSky::from_rms(double level, double error, double rms) const {
   return {level, error, std::max(gain * gain * rms * rms, readout * readout), false};
 }
 
-double ImageSky::mesh_error(double rms) const {
-  // Variance of 2.5 median - 1.5 mean of normal values: (2.5² π/2 + 1.5² - 2·2.5·1.5) σ²/n; a median of filter² cells
-  // lowers it by π/2 / filter².
-  constexpr double kMode = 2.5 * 2.5 * 0.5 * kPi + 1.5 * 1.5 - 2.0 * 2.5 * 1.5;
-  const double filter = settings_.mesh.filter > 1 ? 0.5 * kPi / (settings_.mesh.filter * settings_.mesh.filter) : 1.0;
-  return std::sqrt(kMode * filter) * rms / settings_.mesh.cell;
-}
-
 SkyUnderStar ImageSky::under(PixelPosition star) {
   const Rectangle& area = frame_.pixels.layout().regions()[0];
   switch (settings_.background) {
@@ -53,13 +45,13 @@ SkyUnderStar ImageSky::under(PixelPosition star) {
       const int x = std::clamp(static_cast<int>(std::floor(star.x + 0.5)), area.x0, area.x1() - 1);
       const int y = std::clamp(static_cast<int>(std::floor(star.y + 0.5)), area.y0, area.y1() - 1);
       const double rms = mesh_rms_.at(x, y);
-      return from_rms(mesh_level_.at(x, y), mesh_error(rms), rms);
+      return from_rms(mesh_level_.at(x, y), mesh().level_error(rms), rms);
     }
     case BackgroundMethod::kLocal: {
       const AnnulusBackground annulus =
           annulus_background(frame_, 0, star, settings_.annulus_inner.value(), settings_.annulus_outer.value());
       if (std::isfinite(annulus.level)) return from_rms(annulus.level, annulus.error, annulus.rms);
-      SkyUnderStar sky = from_rms(mesh().median_level(), mesh_error(mesh().median_rms()), mesh().median_rms());
+      SkyUnderStar sky = from_rms(mesh().median_level(), mesh().level_error(mesh().median_rms()), mesh().median_rms());
       sky.fallback = true;
       return sky;
     }

@@ -24,7 +24,6 @@ class ImageSky {
  private:
   [[nodiscard]] const BackgroundMap& mesh();
   [[nodiscard]] SkyUnderStar from_rms(double level, double error, double rms) const;
-  [[nodiscard]] double mesh_error(double rms) const;
 
   const Frame& frame_;
   const ImagePhotometrySettings& settings_;
