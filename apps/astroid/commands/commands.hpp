@@ -59,11 +59,12 @@ int budget(const BudgetOptions& options);
 struct PhotometryOptions {
   std::vector<std::string> images;
   std::string catalogue;
-  std::string method = "aperture";
+  std::string method = "auto";
   std::string psf;  ///< file or gaussian:SIGMA_PX
   bool ignore_overscan = false;
-  std::optional<double> radius, gain, read_noise, saturation, zero_point, exposure_time;
-  std::string background = "local";  ///< local, mesh or a number of ADU
+  std::optional<double> radius, correct_to, threshold, gain, read_noise, saturation, zero_point, exposure_time;
+  std::string background;  ///< local, mesh or a number of ADU; empty: local, or mesh where stars are found
+  std::string residual;    ///< file; empty: none
   std::string output = "sources.csv";
   bool overwrite = false;
 };

@@ -24,7 +24,7 @@ test::StarField field_of(int stars, double fwhm, std::uint64_t seed, double slop
 TEST(MeasureFwhm, IsThatOfTheStars) {
   for (const double fwhm : {1.3, 2.0, 2.5, 4.0, 6.0}) {
     const test::StarField field = field_of(300, fwhm, 4);
-    EXPECT_NEAR(measure_fwhm(field.frame, BackgroundMap(field.frame, 0, {})) / fwhm, 1.0, 0.03) << fwhm;
+    EXPECT_NEAR(measure_fwhm(field.frame, BackgroundMap(field.frame, 0, {})) / fwhm, 1.0, 0.05) << fwhm;
   }
 }
 

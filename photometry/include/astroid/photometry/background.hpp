@@ -67,6 +67,9 @@ class BackgroundMap {
   [[nodiscard]] double median_rms() const { return median_rms_; }
   /// Of the level in one place, where the scatter of a pixel is `rms`, ADU.
   [[nodiscard]] double level_error(double rms) const { return relative_error_ * rms; }
+  /// Of the cells after smoothing, row by row, ADU.
+  [[nodiscard]] std::span<const double> cell_levels() const { return level_.value; }
+  [[nodiscard]] std::span<const double> cell_rms() const { return rms_.value; }
   /// Share of the pixels that hold more light of stars than a fiftieth of their scatter, as far as the fit can tell;
   /// NaN with another estimator.
   [[nodiscard]] double lit_share() const { return lit_share_; }

@@ -18,7 +18,7 @@ struct DetectionSettings {
   /// A peak beside a higher one stands above the saddle between them by this many times the noise there …
   double prominence = 2.0;
   double contrast = 0.005;        ///< … and by this part of the higher one
-  const PixelPsf* psf = nullptr;  ///< nullptr: a Gaussian of the width measured in the image
+  const PixelPsf* psf = nullptr;  ///< that says how wide stars are; nullptr: measured in the image
 };
 
 struct DetectedStar {
@@ -26,21 +26,21 @@ struct DetectedStar {
   double y = 0.0;
   double position_error = 0.0;  ///< px, along each axis; of photon noise and the noise of the sky
   double significance = 0.0;    ///< height of its peak in units of the noise of the sky
-  double light = 0.0;           ///< e-, of a star of the filter's shape with that peak
+  double light = 0.0;           ///< e-, of a Gaussian star with that peak at the centre of a pixel
   int area = 0;                 ///< px, of its footprint
 };
 
 struct Detection {
   std::vector<DetectedStar> stars;  ///< in the order of rows of their peaks
-  double fwhm = 0.0;                ///< px, of the filter
+  double fwhm = 0.0;                ///< px, of stars; the filter is a Gaussian of 0.7 times that
   bool fwhm_measured = false;       ///< else the PSF was given, or no star was bright enough and a default was taken
-  double noise_pixels = 0.0;        ///< pixels whose noise a flux fitted to the filter's shape has
 };
 
 /// FWHM of stars in region 0 of a frame: the median, over bright peaks, of that of a Gaussian through three pixels in a
 /// row or column. It does not depend on where in its pixel a Gaussian star lies; the pixel itself widens it.
 /// @returns NaN with fewer than five peaks of 20 times the noise that are not saturated, flagged, or at the edge.
-/// @accuracy 3 % for FWHM of 1.3 to 6 px (test: MeasureFwhm.IsThatOfTheStars)
+/// @accuracy 5 % for FWHM of 1.3 to 6 px; stars much wider look narrower, by the noise on their tops (test:
+/// MeasureFwhm.IsThatOfTheStars)
 [[nodiscard]] double measure_fwhm(const Frame& frame, const BackgroundMap& background);
 
 /// Finds stars in region 0 of a frame. Pixels that are flagged or not finite count as sky, saturated ones as they are.
