@@ -140,6 +140,12 @@ int run_command_line(int argc, char** argv) {
       ->type_name("PX");
   sub->add_option("--background", photometry_options.background,
                   "local, mesh, or a known level in the image's unit (default: local; mesh for stars that are found)");
+  sub->add_option("--annulus", photometry_options.annulus, "radii of the local background (default: 5 8)")
+      ->type_name("PX PX")
+      ->expected(2);
+  sub->add_option("--clip", photometry_options.clip,
+                  "leave out pixels of the annulus so many sigma from its median (default: 3; 0: none)")
+      ->type_name("SIGMA");
   sub->add_option(
          "--residual", photometry_options.residual,
          "write the image without its background and its stars, as their PSF says (without --psf a Gaussian of "
@@ -154,7 +160,7 @@ int run_command_line(int argc, char** argv) {
       ->type_name("MAG");
   sub->add_option("--exposure-time", photometry_options.exposure_time, "if the header does not say it")->type_name("S");
   sub->add_option("-o,--output", photometry_options.output,
-                  "table of fluxes, CSV or FITS by its name; how they were measured goes to FILE.json beside it")
+                  "table of fluxes, CSV or FITS by its name; how they were measured goes to FILE.json beside a CSV")
       ->type_name("FILE")
       ->capture_default_str();
   add_overwrite(sub, photometry_options.overwrite);

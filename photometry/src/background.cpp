@@ -329,8 +329,7 @@ void subtract_background(Frame& frame, std::size_t region, const BackgroundMap& 
 }
 
 AnnulusBackground annulus_background(const Frame& frame, std::size_t region, PixelPosition centre, double inner,
-                                     double outer) {
-  constexpr double kClip = 3.0;
+                                     double outer, double clip) {
   AnnulusBackground result;
   result.level = kNaN;
   result.error = kNaN;
@@ -348,7 +347,7 @@ AnnulusBackground annulus_background(const Frame& frame, std::size_t region, Pix
       values.push_back(static_cast<double>(pixels.at(x, y)));
     }
   }
-  const SkyEstimate sky = clipped_sky(values, kClip, false);
+  const SkyEstimate sky = clipped_sky(values, clip, false);
   result.pixels = sky.pixels;
   if (sky.pixels < kFewestAnnulusPixels) return result;
   result.level = sky.level;

@@ -35,6 +35,7 @@ Moments moments(std::span<const double> values) {
 // The s of s = f(clip s), with f(t)² = 1 - 2 t φ(t) / (2 Φ(t) - 1) the variance of a normal distribution cut at ± t.
 // Below √3 sigma clipping would never end, so the last value before is taken.
 double detail::clipped_share(double clip) {
+  if (!std::isfinite(clip)) return 1.0;
   constexpr double kLeastClip = 1.8;
   constexpr int kIterations = 60;
   const double k = std::max(clip, kLeastClip);

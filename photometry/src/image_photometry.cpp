@@ -58,6 +58,8 @@ void check_settings(const ImagePhotometrySettings& settings) {
   if (settings.background == BackgroundMethod::kLocal && !(inner >= 0.0 && outer > inner && std::isfinite(outer)))
     complain("annulus", fmt::format("{} to {}", inner, outer), "0 <= inner radius < outer radius, px",
              "the annulus of the local background has no area");
+  if (!(settings.annulus_clip > 0.0))
+    complain("annulus clip", fmt::format("{}", settings.annulus_clip), "more than 0 sigma", "no pixel would be left");
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 

@@ -55,8 +55,8 @@ SkyUnderStar ImageSky::under(PixelPosition star) {
       return from_rms(under.level[column], mesh().level_error(rms), rms);
     }
     case BackgroundMethod::kLocal: {
-      const AnnulusBackground annulus =
-          annulus_background(frame_, 0, star, settings_.annulus_inner.value(), settings_.annulus_outer.value());
+      const AnnulusBackground annulus = annulus_background(frame_, 0, star, settings_.annulus_inner.value(),
+                                                           settings_.annulus_outer.value(), settings_.annulus_clip);
       if (std::isfinite(annulus.level)) return from_rms(annulus.level, annulus.error, annulus.rms);
       SkyUnderStar sky = from_rms(mesh().median_level(), mesh().level_error(mesh().median_rms()), mesh().median_rms());
       sky.fallback = true;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
 
 #include "astroid/catalogues/catalogue_reader.hpp"
 #include "astroid/core/csv.hpp"
@@ -114,6 +115,10 @@ void check_options(const PhotometryOptions& options, bool blind) {
   if (options.method != "auto" && options.method != "aperture" && !psf)
     complain("--method", options.method, "--psf FILE or --psf gaussian:SIGMA_PX with it",
              "all but apertures need the PSF");
+  const bool local = options.background == "local" || (options.background.empty() && !blind);
+  if (!local && (!options.annulus.empty() || options.clip))
+    complain("--annulus, --clip", "", "--background local with it",
+             "there is no annulus around stars that are found on a mesh");
   if (options.threshold && !(*options.threshold > 0.0))
     complain("--threshold", fmt::format("{}", *options.threshold), "more than 0", "everything would be a star");
   if (options.threshold && !blind)
@@ -134,6 +139,12 @@ class PhotometryRun {
     if (options.radius) settings_.aperture_radius = Pixels(*options.radius);
     if (options.zero_point) settings_.zero_point = Magnitude(*options.zero_point);
     set_background(options.background, blind_, settings_);
+    if (!options.annulus.empty()) {
+      settings_.annulus_inner = Pixels(options.annulus.front());
+      settings_.annulus_outer = Pixels(options.annulus.back());
+    }
+    if (options.clip)
+      settings_.annulus_clip = *options.clip == 0.0 ? std::numeric_limits<double>::infinity() : *options.clip;
     if (options.gain) read_.gain = Gain(*options.gain);
     if (options.read_noise) read_.readout_noise = Electrons(*options.read_noise);
     if (options.saturation) read_.saturation = Adu(*options.saturation);

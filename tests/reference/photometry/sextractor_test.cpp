@@ -9,6 +9,7 @@
 
 #include "astroid/core/fits.hpp"
 #include "astroid/photometry/background.hpp"
+#include "astroid/photometry/detection.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "astroid/test/ground_scene.hpp"
 #include "astroid/test/python.hpp"
@@ -105,6 +106,42 @@ TEST(BackgroundMap, IsThatOfSepWithoutQuantisation) {
   EXPECT_LT(d.worst_rms, 0.03);
 }
 
+// Columns of the catalogue, 0-based.
+constexpr std::size_t kX = 1;
+constexpr std::size_t kFlux = 12;
+constexpr std::size_t kError = 13;
+
+std::vector<std::vector<double>> read_catalogue_of_sextractor(const std::filesystem::path& path) {
+  std::vector<std::vector<double>> rows;
+  std::ifstream lines(path);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream fields(line);
+    std::vector<double> value;
+    for (double v = 0.0; fields >> v;) value.push_back(v);
+    if (value.size() > kError) rows.push_back(std::move(value));
+  }
+  return rows;
+}
+
+TEST(DetectStars, FindsTheSourcesOfSextractor) {
+  const auto image = test::shared_data("images/sep_image.fits");
+  const auto catalogue = test::shared_data("images/sep_image_sextractor.cat");
+  if (!image || !catalogue) GTEST_SKIP() << "the shared images are not here";
+  const ImageFile file = read_frame(*image);
+  const Detection found = detect_stars(file.frame, BackgroundMap(file.frame, 0, {}), {});
+  const auto theirs = read_catalogue_of_sextractor(*catalogue);
+  ASSERT_GT(theirs.size(), 50U);
+  std::size_t near = 0;
+  for (const auto& row : theirs)
+    near += std::any_of(found.stars.begin(), found.stars.end(), [&](const DetectedStar& star) {
+      return std::hypot(star.x - (row[kX] - 1.0), star.y - (row[kX + 1] - 1.0)) < 2.5;
+    });
+  std::cout << near << " of " << theirs.size() << " sources of SExtractor are among our " << found.stars.size() << '\n';
+  // Theirs are barycentres of galaxies too; all have five pixels above 1.5 sigma.
+  EXPECT_EQ(near, theirs.size());
+}
+
 TEST(AperturePhotometry, MeasuresTheFluxesOfSextractor) {
   const auto image = test::shared_data("images/sep_image.fits");
   const auto back = test::shared_data("images/sep_back.fits");
@@ -118,16 +155,9 @@ TEST(AperturePhotometry, MeasuresTheFluxesOfSextractor) {
   std::vector<SourceRequest> requests;
   std::vector<double> their_flux;
   std::vector<double> their_error;
-  std::ifstream lines(*catalogue);
-  for (std::string line; std::getline(lines, line);) {
-    if (line.empty() || line[0] == '#') continue;
-    std::istringstream fields(line);
-    std::vector<double> value;
-    for (double v = 0.0; fields >> v;) value.push_back(v);
-    constexpr std::size_t kFlux = 12;  // columns of the catalogue, 0-based
-    constexpr std::size_t kError = 13;
-    ASSERT_GT(value.size(), kError);
-    requests.push_back({std::to_string(requests.size()), PixelPosition{value[1] - 1.0, value[2] - 1.0}, std::nullopt});
+  for (const auto& value : read_catalogue_of_sextractor(*catalogue)) {
+    requests.push_back(
+        {std::to_string(requests.size()), PixelPosition{value[kX] - 1.0, value[kX + 1] - 1.0}, std::nullopt});
     their_flux.push_back(value[kFlux]);
     their_error.push_back(value[kError]);
   }

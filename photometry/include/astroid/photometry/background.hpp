@@ -110,7 +110,8 @@ struct AnnulusBackground {
 inline constexpr std::size_t kFewestAnnulusPixels = 12;
 
 /// Uses the pixels that are finite and without any flag.
+/// @param clip  sigma from the median beyond which pixels are left out; infinity: the plain median.
 [[nodiscard]] AnnulusBackground annulus_background(const Frame& frame, std::size_t region, PixelPosition centre,
-                                                   double inner, double outer);
+                                                   double inner, double outer, double clip = 3.0);
 
 }  // namespace astroid

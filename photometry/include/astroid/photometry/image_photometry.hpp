@@ -60,6 +60,7 @@ struct ImagePhotometrySettings {
   Adu known_background;  ///< counts per pixel, bias included; for BackgroundMethod::kKnown
   Pixels annulus_inner{5.0};
   Pixels annulus_outer{8.0};
+  double annulus_clip = 3.0;  ///< sigma; infinity: the plain median
   MeshSettings mesh;
   std::shared_ptr<const BackgroundMap> map;  ///< instead of one made with `mesh`
   Magnitude zero_point{0.0};                 ///< that gives one detected e-/s; 0: instrumental magnitudes
