@@ -101,6 +101,7 @@ GrowthCurve measure_growth(const Frame& frame, const BackgroundMap& background, 
   for (auto& ring : rings) {
     const double middle = median(ring);
     std::vector<double> deviations;
+    deviations.reserve(ring.size());
     for (const double value : ring) deviations.push_back(std::abs(value - middle));
     // A median's error is √(π/2) times that of a mean.
     const double error = std::sqrt(0.5 * kPi / static_cast<double>(ring.size())) * kMadToSigma * median(deviations);

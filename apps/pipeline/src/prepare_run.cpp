@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -186,7 +187,7 @@ std::int64_t exposures_per_refresh(const Scene& scene) {
   const Mission& mission = scene.mission();
   const double refresh = mission.photometry.mask_refresh.value();
   if (!(refresh > 0.0) || (scene.attitude_trend().is_still() && !mission.satellite.aberration)) return 0;
-  return std::max<std::int64_t>(1, static_cast<std::int64_t>(refresh / mission.simulation.cycle.value() + 0.5));
+  return std::max<std::int64_t>(1, std::llround(refresh / mission.simulation.cycle.value()));
 }
 
 /// The stars where they are in the middle of exposures first … last-1, but for jitter.

@@ -24,7 +24,7 @@ class CellHistogram {
 
   /// The same as clipped_sky() of the values, with limits at edges of bins.
   /// @returns false when the clipped range reaches beyond the bins: the values must be sorted.
-  /// @accuracy level within 0.01, rms within 0.01 of the rms of a pixel (test: CellHistogram.IsTheSortedEstimate)
+  /// @accuracy level within 0.01, rms within 0.01 of the rms of a pixel (test: CellHistogramOf.IsTheSortedEstimate)
   bool clipped(double clip, bool mode, SkyEstimate& sky) const;
 
   /// Adds the counts to bins of width `step` rms around `level`, the first of which begins `reach` rms below it. Each

@@ -10,30 +10,30 @@
 namespace astroid {
 namespace {
 
-// Normal noise, and in a share of the pixels light of stars.
-std::vector<float> cell_values(std::uint32_t seed, std::size_t count, double sigma, double lit, double quantum) {
-  const double level = 20.0 * sigma;
-  const test::TestNoise noise(seed);
-  std::vector<float> values;
-  for (std::uint32_t i = 0; i < count; ++i) {
-    double v = level + sigma * noise.normal(0, i);
-    if (noise.uniform(1, i) < lit) v += sigma * std::exp(8.0 * noise.uniform(2, i) - 3.0);
-    values.push_back(static_cast<float>(quantum > 0.0 ? quantum * std::floor(v / quantum + 0.5) : v));
-  }
-  return values;
-}
-
 struct Case {
   std::size_t count;
   double sigma, lit, quantum;
 };
+
+// Normal noise, and in a share of the pixels light of stars.
+std::vector<float> cell_values(std::uint32_t seed, const Case& c) {
+  const double level = 20.0 * c.sigma;
+  const test::TestNoise noise(seed);
+  std::vector<float> values;
+  for (std::uint32_t i = 0; i < c.count; ++i) {
+    double v = level + c.sigma * noise.normal(0, i);
+    if (noise.uniform(1, i) < c.lit) v += c.sigma * std::exp(8.0 * noise.uniform(2, i) - 3.0);
+    values.push_back(static_cast<float>(c.quantum > 0.0 ? c.quantum * std::floor(v / c.quantum + 0.5) : v));
+  }
+  return values;
+}
 
 class CellHistogramOf : public testing::TestWithParam<Case> {};
 
 TEST_P(CellHistogramOf, IsTheSortedEstimate) {
   const Case& c = GetParam();
   for (std::uint32_t seed = 1; seed <= 20; ++seed) {
-    const std::vector<float> values = cell_values(seed, c.count, c.sigma, c.lit, c.quantum);
+    const std::vector<float> values = cell_values(seed, c);
     std::vector<double> sorted(values.begin(), values.end());
     const SkyEstimate expected = clipped_sky(sorted, 3.0, false);
     detail::CellHistogram histogram;
@@ -62,13 +62,13 @@ TEST(CellHistogram, LeavesToSortingWhatHasNoScatter) {
 }
 
 TEST(CellHistogram, SeesDigitisation) {
-  EXPECT_EQ(detail::quantum_of(cell_values(3, 4096, 2.5, 0.0, 1.0)), 1.0);
-  EXPECT_EQ(detail::quantum_of(cell_values(3, 4096, 2.5, 0.0, 0.0)), 0.0);
+  EXPECT_EQ(detail::quantum_of(cell_values(3, {4096, 2.5, 0.0, 1.0})), 1.0);
+  EXPECT_EQ(detail::quantum_of(cell_values(3, {4096, 2.5, 0.0, 0.0})), 0.0);
   EXPECT_EQ(detail::quantum_of(std::vector<float>(100, 3.0F)), 0.0);
 }
 
 TEST(CellHistogram, AddsEveryPixelOnceToScaledBins) {
-  const std::vector<float> values = cell_values(5, 4096, 5.0, 0.0, 0.0);
+  const std::vector<float> values = cell_values(5, {4096, 5.0, 0.0, 0.0});
   detail::CellHistogram histogram;
   ASSERT_TRUE(histogram.fill(values, 0.0));
   std::vector<double> bins(120, 0.0);

@@ -47,7 +47,7 @@ struct MeshSettings {
 /// A smooth background over one region of a frame, in ADU: natural bicubic spline through the centres of the cells.
 ///
 /// @accuracy bias in a field of 1500 stars on 1024² px, sky 20 e-, rms 6.7 e-: 0.0 e- (mode -0.1, median +0.1); of
-/// 15,000 stars: -0.1 e- (mode +0.7, median +1.3) (test: BackgroundMap.IsUnbiasedInACrowd).
+/// 15,000 stars: -0.1 e- (mode +0.7, median +1.3) (test: BackgroundBias.IsATenthOfAnElectronAtMost).
 /// @complexity O(pixels): a histogram for each cell.
 /// @source F150, F151; BertinArnouts1996.
 class BackgroundMap {

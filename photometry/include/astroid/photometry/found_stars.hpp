@@ -46,7 +46,7 @@ struct FoundStars {
 ///
 /// Neighbours' light in a circle is not taken out; `crowding` says how much of what is known of them it holds.
 /// @throws InputError as detect_stars(), measure_image() and measure_growth().
-/// @complexity O(pixels + stars): 1024² px in 30 ms (bench: tests/bench/peers.py)
+/// @complexity O(pixels + stars): 1024² px in 30 ms (tests/bench/peers.py)
 [[nodiscard]] FoundStars measure_found_stars(const Frame& frame, const SkyProjection* sky,
                                              const FoundStarsSettings& settings);
 
