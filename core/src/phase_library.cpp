@@ -158,6 +158,8 @@ void PhaseLibrary::integrate(PixelPosition star, Rectangle box, std::span<double
                  double* to = fractions.data() + out;
                  for (std::size_t i = 0; i < count; ++i) to[i] += weight * from[i];
                });
+  // Where light ends, interpolation overshoots by what it errs.
+  for (double& fraction : fractions) fraction = std::max(fraction, 0.0);
 }
 
 void PhaseLibrary::add(PixelPosition star, double electrons, Rectangle box,

@@ -85,8 +85,7 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
       series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
     if (treatment == JitterTreatment::kPolynomial) {
       const auto number = static_cast<std::int64_t>(series->moments.size() - 1) / series->bands;
-      const std::vector<float> weights =
-          exposure_weights(plan.knobs.polynomial, exposure, plan.place_in_epoch(number));
+      const std::vector<float> weights = exposure_weights(plan.knobs.polynomial, exposure, plan.place_in_epoch(number));
       series->weights.insert(series->weights.end(), weights.begin(), weights.end());
     }
   };
