@@ -1,3 +1,4 @@
+#include "astroid/core/units.hpp"
 #include "configuration_parameter.hpp"
 
 namespace astroid::configuration {
@@ -40,11 +41,7 @@ std::vector<Parameter> photometry_parameters() {
                   "the stars "
                   "to in the middle of each stretch; 0: once, for the nominal pointing.",
        .example = "90",
-       .assign =
-           [](Mission& m, const Value& v) {
-             constexpr double kSecondsPerDay = 86400.0;
-             m.photometry.mask_refresh = Seconds(v.real * kSecondsPerDay);
-           }},
+       .assign = [](Mission& m, const Value& v) { m.photometry.mask_refresh = Seconds(v.real * kSecondsPerDay); }},
       {.path = "Photometry/MaskReach",
        .unit = "px",
        .range = from_to(0, 10000),

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "astroid/core/math.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "field/neighbours.hpp"
 
@@ -13,7 +14,6 @@ namespace astroid {
 
 namespace {
 
-constexpr double kFwhmPerSigma = 2.3548200450309493;
 constexpr double kRadius = 1.2;         // FWHM: where the noise of sky and star together is least
 constexpr double kCrowdedRadius = 0.8;  // FWHM: less of the neighbours
 constexpr double kLeastRadius = 1.5;    // px

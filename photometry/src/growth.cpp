@@ -7,19 +7,12 @@
 #include <limits>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/statistics/robust.hpp"
 #include "astroid/photometry/aperture.hpp"
 
 namespace astroid {
 
 namespace {
-
-constexpr double kMadToSigma = 1.4826;
-
-double median(std::vector<double>& values) {
-  const std::size_t n = values.size();
-  std::sort(values.begin(), values.end());
-  return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
-}
 
 // Light within each radius, e-; empty if a pixel cannot be used.
 std::vector<double> light_within(const Frame& frame, const std::vector<std::vector<double>>& level,
@@ -98,13 +91,11 @@ GrowthCurve measure_growth(const Frame& frame, const BackgroundMap& background, 
   if (curve.stars < settings.fewest_stars) return curve;
   std::vector<double> grown{1.0};
   std::vector<double> variance{0.0};
-  for (auto& ring : rings) {
-    const double middle = median(ring);
-    std::vector<double> deviations;
-    deviations.reserve(ring.size());
-    for (const double value : ring) deviations.push_back(std::abs(value - middle));
+  for (const auto& ring : rings) {
+    const RobustSpread spread = robust_spread(ring);
+    const double middle = spread.centre;
     // A median's error is √(π/2) times that of a mean.
-    const double error = std::sqrt(0.5 * kPi / static_cast<double>(ring.size())) * kMadToSigma * median(deviations);
+    const double error = std::sqrt(0.5 * kPi / static_cast<double>(ring.size())) * spread.value;
     grown.push_back(grown.back() + middle);
     variance.push_back(variance.back() + error * error);
   }

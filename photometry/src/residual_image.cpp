@@ -31,10 +31,7 @@ Image<float, unit::Adu> residual_image(const Frame& frame, const BackgroundMap& 
   for (const SourceMeasurement& source : sources) {
     if (!std::isfinite(source.flux) || !std::isfinite(source.x) || !std::isfinite(source.y)) continue;
     const double lost = std::clamp(kWing * noise / std::max(1e-300, std::abs(source.flux)), kLeastLost, kMostLost);
-    const double half = std::ceil(psf.stamp_half_width(lost));
-    const Rectangle stamp{static_cast<int>(std::floor(source.x - half)), static_cast<int>(std::floor(source.y - half)),
-                          static_cast<int>(2 * half) + 2, static_cast<int>(2 * half) + 2};
-    const Rectangle box = intersect(stamp, area);
+    const Rectangle box = intersect(stamp_box({source.x, source.y}, psf.stamp_half_width(lost)), area);
     if (box.size() == 0) continue;
     fractions.resize(box.size());
     psf.integrate({source.x, source.y}, box, fractions);

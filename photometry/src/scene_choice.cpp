@@ -14,7 +14,7 @@ constexpr double kUndersampled = 1.6;  // px of FWHM: a Gaussian is sampled at l
 
 }  // namespace
 
-MethodChoice choose_method(const SceneSummary& scene) {
+MethodChoice choose_method(const ImageScene& scene) {
   const bool crowded = scene.neighbours > kCrowdedShare;
   const bool undersampled = scene.fwhm < kUndersampled;  // false for NaN
   const std::string crowd =

@@ -20,6 +20,7 @@
 #include "astroid/core/run_time.hpp"
 #include "astroid/core/sphere.hpp"
 #include "astroid/core/throughput.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/sim/accuracy_shares.hpp"
 #include "astroid/sim/smearing.hpp"
 #include "effects/drift.hpp"
@@ -81,16 +82,10 @@ double aberration_px_per_second(const AberrationJacobian& j) {
 
 /// Velocities of the spacecraft relative to the start, over the run.
 std::vector<Velocity> velocities(const SimulationSettings& simulation) {
-  constexpr double kSecondsPerDay = 86400.0;
   constexpr int kPieces = 32;
-  const double days = static_cast<double>(simulation.exposures) * simulation.cycle.value() / kSecondsPerDay;
-  const Velocity start = spacecraft_velocity(simulation.start_mjd);
+  const Seconds length(static_cast<double>(simulation.exposures) * simulation.cycle.value());
   std::vector<Velocity> all;
-  for (int i = 1; i <= kPieces; ++i) {
-    Velocity v = spacecraft_velocity(simulation.start_mjd + days * i / kPieces);
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= start[k];
-    all.push_back(v);
-  }
+  for (int i = 1; i <= kPieces; ++i) all.push_back(velocity_since_start(simulation, (1.0 * i / kPieces) * length));
   return all;
 }
 
@@ -183,7 +178,6 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   projection_.emplace(pointing);
 
   if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
-  constexpr double kSecondsPerDay = 86400.0;
   summary_.epoch =
       julian_year(mission_.simulation.start_mjd + middle_of_run(mission_.simulation).value() / kSecondsPerDay);
 

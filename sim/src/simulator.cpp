@@ -9,6 +9,7 @@
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/plane_kernels.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/sim/rolling_shutter.hpp"
 
 namespace astroid {
@@ -59,7 +60,6 @@ FrameHeader common_header(const Mission& mission, int camera) {
 void set_time(const Scene& scene, std::int64_t exposure, FrameHeader& header) {
   header.exposure = exposure;
   header.mid_time = scene.mid_time(exposure);
-  constexpr double kSecondsPerDay = 86400.0;
   header.mid_mjd = scene.mission().simulation.start_mjd + header.mid_time.value() / kSecondsPerDay;
 }
 
@@ -237,7 +237,6 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   if (!remembers_) return;
   state.still = false;
   const Mission& mission = scene_->mission();
-  constexpr double kSecondsPerDay = 86400.0;
   const double quarter = mission.satellite.quarter_days * kSecondsPerDay / mission.simulation.cycle.value();
   for (const PastCharge& past : past_charge(*camera_.cmos.persistence, exposure, plan_->knobs.memory_block, quarter))
     state.past.push_back({.electrons = past_image(past.exposure), .share = past.share});

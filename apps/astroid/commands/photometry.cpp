@@ -9,6 +9,7 @@
 #include "astroid/catalogues/catalogue_reader.hpp"
 #include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/photometry/field_photometry.hpp"
 #include "astroid/photometry/found_stars.hpp"
 #include "astroid/photometry/image_photometry.hpp"
@@ -195,7 +196,6 @@ class PhotometryRun {
 
  private:
   static std::shared_ptr<const PixelPsf> gaussian_of(double fwhm) {
-    constexpr double kFwhmPerSigma = 2.3548200450309493;
     constexpr double kDefault = 2.0;  // px
     return make_gaussian_psf((std::isfinite(fwhm) && fwhm > 0.0 ? fwhm : kDefault) / kFwhmPerSigma);
   }
@@ -215,7 +215,6 @@ class PhotometryRun {
                                                  PhotometryRecord& record) {
     ImagePhotometrySettings settings = settings_;
     settings.map = map;
-    record.fwhm = measure_fwhm(frame, *map);
     record.why = "it was asked for";
     record.method = options_.method;
     std::optional<FoundStars> found;
@@ -233,6 +232,7 @@ class PhotometryRun {
       }
       found = measure_found_stars(frame, sky, find);
     }
+    record.fwhm = found && found->detection.fwhm_measured ? found->detection.fwhm : measure_fwhm(frame, *map);
     if (options_.method == "auto") {
       const MethodChoice choice = choose_method(summary(frame, sky, found, record.fwhm));
       settings.method = choice.method;
@@ -262,9 +262,9 @@ class PhotometryRun {
     return circles + "; fluxes are those in the circles.";
   }
 
-  SceneSummary summary(const Frame& frame, const SkyProjection* sky, const std::optional<FoundStars>& found,
-                       double fwhm) const {
-    SceneSummary scene;
+  ImageScene summary(const Frame& frame, const SkyProjection* sky, const std::optional<FoundStars>& found,
+                     double fwhm) const {
+    ImageScene scene;
     scene.psf_given = settings_.psf != nullptr;
     scene.catalogue = !blind_;
     scene.fwhm = fwhm;

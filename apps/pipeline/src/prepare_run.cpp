@@ -201,13 +201,8 @@ std::vector<FieldStar> stars_in_between(const Scene& scene, std::int64_t first, 
   const double start = static_cast<double>(middle) * simulation.cycle.value();
   const double time = scene.mid_time(middle).value();
   const Attitude trend = scene.attitude_trend().at(time, start);
-  Velocity velocity{};
-  if (scene.mission().satellite.aberration) {
-    constexpr double kSecondsPerDay = 86400.0;
-    const Velocity now = spacecraft_velocity(simulation.start_mjd + time / kSecondsPerDay);
-    const Velocity then = spacecraft_velocity(simulation.start_mjd);
-    for (std::size_t k = 0; k < velocity.size(); ++k) velocity[k] = now[k] - then[k];
-  }
+  const Velocity velocity =
+      scene.mission().satellite.aberration ? velocity_since_start(simulation, Seconds(time)) : Velocity{};
   std::vector<FieldStar> stars = field_stars(scene);
   for (std::size_t i = 0; i < stars.size(); ++i) {
     const SceneStar& star = scene.stars()[i];

@@ -8,6 +8,7 @@
 
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
+#include "astroid/core/units.hpp"
 #include "detect/peaks.hpp"
 #include "detect/smooth_image.hpp"
 
@@ -15,7 +16,6 @@ namespace astroid {
 
 namespace {
 
-constexpr double kFwhmPerSigma = 2.3548200450309493;
 constexpr double kDefaultFwhm = 2.0;  // px, where no star tells
 // The filter is narrower than a star: 6 % less significance of stars alone, and pairs are told apart that the star's
 // own shape would join, half of those it misses in a crowd.

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "astroid/core/math.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid::detail {
 
@@ -44,7 +45,6 @@ double FilterKernel::norm() const {
 }
 
 FilterKernel gaussian_kernel(double fwhm) {
-  constexpr double kFwhmPerSigma = 2.3548200450309493;
   constexpr double kReach = 2.5;  // sigma: what lies beyond adds 0.1 % to the significance
   constexpr int kWidest = 32;     // px
   const double k = kFwhmPerSigma / (fwhm * std::sqrt(2.0));

@@ -10,6 +10,7 @@
 #include "astroid/core/sub_pixel.hpp"
 #include "astroid/test/psf_table.hpp"
 #include "astroid/test/quadrature.hpp"
+#include "astroid/test/sub_pixel_psf.hpp"
 
 namespace astroid {
 namespace {
@@ -19,19 +20,7 @@ const std::vector<PixelPosition> kStars = {{2.0, 2.5}, {2.47, 1.77}};
 
 /// Light that the map puts into the pixels: of cells times their sensitivity, or of the response in Fourier space.
 std::vector<double> mapped(const SubPixelRenderer& renderer, const PixelResponse& response, PixelPosition star) {
-  const StarLight light{.centre = star, .electrons = 1.0};
-  SubPixelRenderer::Workspace workspace;
-  std::vector<double> p(kBox.size());
-  const int n = response.cells;
-  for (const Rectangle& tile : renderer.tiles()) {
-    std::vector<double> cells(tile.size() * static_cast<std::size_t>(n * n));
-    renderer.render_cells(tile, {&light, 1}, workspace, cells);
-    for (int y = 0; y < tile.ny * n; ++y)
-      for (int x = 0; x < tile.nx * n; ++x)
-        p[static_cast<std::size_t>((tile.y0 - kBox.y0 + y / n) * kBox.nx + tile.x0 - kBox.x0 + x / n)] +=
-            response.at(x % n, y % n) * cells[static_cast<std::size_t>(y * tile.nx * n + x)];
-  }
-  return p;
+  return test::light_by_cells(renderer, response, star, kBox);
 }
 
 /// What there is of a star's light, in parts that have each a brightness of their own.

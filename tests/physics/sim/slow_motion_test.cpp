@@ -11,6 +11,7 @@
 
 #include "astroid/core/distributions.hpp"
 #include "astroid/sim/simulator.hpp"
+#include "astroid/test/aperture_fluxes.hpp"
 #include "astroid/test/scenes.hpp"
 
 namespace astroid {
@@ -37,21 +38,6 @@ Mission mission(bool jitter) {
   mission.satellite.aberration = true;
   mission.ccd.axis_x = 3600.0;
   return mission;
-}
-
-std::vector<double> aperture_fluxes(const Scene& scene, const ExposureState& state) {
-  std::vector<double> fluxes;
-  for (const std::size_t target : scene.targets()) {
-    const PixelPosition p = scene.stars()[target].position;
-    const Rectangle box =
-        intersect({static_cast<int>(std::floor(p.x + 0.5)) - 1, static_cast<int>(std::floor(p.y + 0.5)) - 1, 3, 3},
-                  {0, 0, kSide, kSide});
-    double sum = 0.0;
-    for (int y = box.y0; y < box.y1(); ++y)
-      for (int x = box.x0; x < box.x1(); ++x) sum += state.expected.whole().view(0).at(x, y);
-    fluxes.push_back(sum);
-  }
-  return fluxes;
 }
 
 /// The same plan with every exposure rendered under its own conditions.
@@ -84,8 +70,8 @@ void expect_within_share(bool jitter) {
        {std::int64_t{0}, length / 5, length - 1, length, std::min(last, 7 * length / 2), last}) {
     recalled.expect(exposure, a);
     rendered.expect(exposure, b);
-    const std::vector<double> fast = aperture_fluxes(*scene, a);
-    const std::vector<double> exact = aperture_fluxes(*scene, b);
+    const std::vector<double> fast = test::aperture_fluxes(*scene, a);
+    const std::vector<double> exact = test::aperture_fluxes(*scene, b);
     if (first.empty()) first = exact;
     for (std::size_t t = 0; t < fast.size(); ++t) {
       worst = std::max(worst, std::abs(fast[t] - exact[t]) / scene->summary().flux_tolerance(exact[t]));

@@ -95,7 +95,7 @@ TEST(MeasuredGain, IsNotToldByAnEvenSky) {
 }
 
 TEST(ChooseMethod, SaysWhy) {
-  SceneSummary scene{.stars = 100, .fwhm = 2.5, .neighbours = 0.05};
+  ImageScene scene{.stars = 100, .fwhm = 2.5, .neighbours = 0.05};
   EXPECT_EQ(choose_method(scene).method, PhotometryMethod::kAperture);
   scene.psf_given = true;
   EXPECT_EQ(choose_method(scene).method, PhotometryMethod::kPsf);

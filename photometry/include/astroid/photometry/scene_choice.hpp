@@ -12,7 +12,7 @@
 namespace astroid {
 
 /// What the choice of a method looks at.
-struct SceneSummary {
+struct ImageScene {
   std::size_t stars = 0;    ///< found, or in the catalogue
   double fwhm = 0.0;        ///< px; NaN where nothing tells
   double neighbours = 0.0;  ///< share of the stars with another within three FWHM
@@ -27,7 +27,7 @@ struct MethodChoice {
 
 /// Fits where the PSF is known, but an undersampled sparse scene with a catalogue is measured with a weighted mask,
 /// which forgives an error of the PSF's shape within a pixel; circles where it isn't known.
-[[nodiscard]] MethodChoice choose_method(const SceneSummary& scene);
+[[nodiscard]] MethodChoice choose_method(const ImageScene& scene);
 
 /// Gain from photon transfer within one image: variance of the background against its level, cell by cell.
 struct MeasuredGain {
