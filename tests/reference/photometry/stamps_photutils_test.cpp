@@ -60,7 +60,8 @@ std::vector<double> stamp_of(const PixelPsf& psf, PixelPosition centre) {
 class PhotutilsStamps : public testing::Test {
  protected:
   void SetUp() override {
-    if (!test::python_has({"numpy", "photutils"})) GTEST_SKIP() << "python3-photutils is not installed";
+    if (!test::python_has({"numpy", "scipy", "photutils"}))
+      GTEST_SKIP() << "python3-photutils or -scipy is not installed";
   }
 };
 
