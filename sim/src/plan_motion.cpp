@@ -12,17 +12,29 @@ namespace astroid {
 
 namespace {
 
-constexpr double kReach = 4.5;  // rms of the jitter in one cell: others are seldom needed
+constexpr double kReach = 4.5;       // rms of the jitter in one cell: others are seldom needed
+constexpr double kUsualReach = 1.0;  // rms
 
-/// Displacement of any star by one unit of each axis, px.
+/// How much farther motion seems to reach beside brighter stars, whose wings are steeper than a star's own core: for
+/// the worst of all targets the polynomial is good to the accuracy within kUsualReach, for others to the border of a
+/// cell.
+double stretch(const SceneSummary& s) {
+  return std::max(1.0, det::sqrt(s.neighbour_curvature) * kUsualReach / kReach);
+}
+
+/// Displacement of any star by one unit of each axis, px, stretched.
 AttitudeReach per_arcsec(const Scene& scene) {
   AttitudeReach reach;
+  const double by = stretch(scene.summary());
   for (const SceneStar& star : scene.stars()) {
     const AttitudeJacobian& j = star.motion;
     reach.yaw = std::max(reach.yaw, det::hypot(j.dx_dyaw, j.dy_dyaw));
     reach.pitch = std::max(reach.pitch, det::hypot(j.dx_dpitch, j.dy_dpitch));
     reach.roll = std::max(reach.roll, det::hypot(j.dx_droll, j.dy_droll));
   }
+  reach.yaw *= by;
+  reach.pitch *= by;
+  reach.roll *= by;
   return reach;
 }
 
@@ -50,7 +62,9 @@ Candidate with_part(const Scene& scene, const Plan& plan, const AttitudeReach& u
                            (drift.roll == 0.0 || scale.roll > 0.0);
   if (!holds_drift) return candidate;
   // Where the drift has brought an exposure to the border of its cell, the motion within it reaches beyond.
-  const double beyond = scene.attitude_trend().is_still() ? 0.0 : kReach * scene.summary().attitude_rms_in_exposure_px;
+  const double beyond = scene.attitude_trend().is_still()
+                            ? 0.0
+                            : kReach * stretch(scene.summary()) * scene.summary().attitude_rms_in_exposure_px;
   const AttitudeReach reach{unit.yaw * scale.yaw + (scale.yaw > 0.0 ? beyond : 0.0),
                             unit.pitch * scale.pitch + (scale.pitch > 0.0 ? beyond : 0.0),
                             unit.roll * scale.roll + (scale.roll > 0.0 ? beyond : 0.0), unit.slow};
@@ -89,7 +103,8 @@ void plan_jitter(const Scene& scene, double share, Plan& plan) {
 
   const double allowed = share * s.flux_tolerance(flux) / flux;  // relative
   // Both axes: half the curvature times the variance of the motion, and what the next order leaves of it.
-  const double second_order = s.psf.curvature * s.attitude_rms_in_exposure_px * s.attitude_rms_in_exposure_px;
+  const double second_order =
+      s.psf.curvature * s.neighbour_curvature * s.attitude_rms_in_exposure_px * s.attitude_rms_in_exposure_px;
   const double fourth_order = second_order * second_order;
   if (second_order <= allowed) {
     plan.jitter_error = flux * second_order;

@@ -80,6 +80,10 @@ std::string to_text(const Plan& plan, const Scene& scene) {
     out += fmt::format("  jitter    {} with {} step(s) in an exposure: at most {:.2g} ppm of the brightest target\n",
                        to_string(plan.knobs.jitter), plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s));
   }
+  constexpr double kWorthSaying = 1.05;
+  if (plan.knobs.jitter != JitterTreatment::kNone && s.neighbour_curvature > kWorthSaying)
+    out += fmt::format("            (beside brighter stars light bends up to {:.2g} times as much as a star's own)\n",
+                       s.neighbour_curvature);
   for (const std::string& text : plan.approximations) out += fmt::format("  note      {}\n", text);
   const double exposures =
       static_cast<double>(scene.mission().simulation.exposures) * scene.mission().telescope.simulated_cameras;

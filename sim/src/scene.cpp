@@ -26,6 +26,7 @@
 #include "effects/drift.hpp"
 #include "effects/jitter_model.hpp"
 #include "effects/repointing.hpp"
+#include "neighbour_motion.hpp"
 #include "psf_sensitivity.hpp"
 #include "reference_pixels.hpp"
 
@@ -323,6 +324,12 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.psf = measure_sensitivity(*psf_);
   // What a saturated star's flux means does not depend on ppm.
   s.brightest_target_electrons = std::min(brightest_target, ccd.full_well.value() / s.psf.peak_fraction);
+  if (s.attitude_rms_px > 0.0 || s.drift_px > 0.0 || s.aberration_px > 0.0) {
+    std::vector<bool> is_target;
+    is_target.reserve(stars_.size());
+    for (const SceneStar& star : stars_) is_target.push_back(may_be_target(star, mission_));
+    s.neighbour_curvature = neighbour_curvature(stars_, is_target, *psf_, s);
+  }
   s.stars = stars_.size();
   for (const Ghost& ghost : ghosts_) s.ghost_light += ghost.electrons / disc_area(mission_.telescope.ghosts);
   s.ghosts = ghosts_.size();

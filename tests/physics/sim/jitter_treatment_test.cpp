@@ -111,5 +111,80 @@ TEST(JitterTreatment, BroadeningIsTheLimitOfSubSteps) {
   EXPECT_GT(worst_shifted, 1e-4);
 }
 
+/// Expected electrons in 3 x 3 px about (21, 20) by the plan at an accuracy, on the path of a more exact one.
+double planned_light(Mission mission, const StarCatalogue& stars, double ppm, JitterTreatment& treatment) {
+  mission.simulation.accuracy = Ppm(ppm);
+  const auto scene = std::make_shared<const Scene>(mission, stars);
+  constexpr int kSteps = 200;
+  const auto plan = std::make_shared<const Plan>(make_plan(*scene, {}, kSteps));
+  treatment = plan->knobs.jitter;
+  const Simulator simulator(scene, plan, 0);
+  ExposureState state = simulator.make_state();
+  double sum = 0.0;
+  for (int exposure = 0; exposure < 4; ++exposure) {
+    simulator.expect(exposure, state);
+    for (int y = 19; y <= 21; ++y)
+      for (int x = 20; x <= 22; ++x) sum += state.expected.whole().view(0).at(x, y);
+  }
+  return sum;
+}
+
+// The wing of a brighter star is steeper than the core of a star: light in an aperture there bends more with motion
+// than that of a star alone, which is broadened only where that matters.
+TEST(JitterTreatment, ThinksOfBrighterNeighbours) {
+  Mission mission = test::bare_mission(40, 40);
+  mission.satellite.jitter.model = JitterModel::kRedNoise;
+  mission.satellite.jitter.yaw = mission.satellite.jitter.pitch = Arcseconds(0.045);
+  const std::vector<test::LabStar> alone{{21.2, 20.1, 1e6}};
+  const std::vector<test::LabStar> beside{{21.2, 20.1, 1e6}, {17.9, 20.4, 4e8}};
+  mission.ccd.full_well = Electrons(5e5);  // of the bright star, which is no target that matters
+  for (const auto& [stars, expected] :
+       {std::pair{alone, JitterTreatment::kShift}, std::pair{beside, JitterTreatment::kBroadened}}) {
+    JitterTreatment treatment{};
+    JitterTreatment exact{};
+    const double truth = planned_light(mission, test::lab_catalogue(stars), 0.001, exact);
+    const double light = planned_light(mission, test::lab_catalogue(stars), 1.0, treatment);
+    EXPECT_EQ(treatment, expected);
+    std::printf("%zu stars: %s errs by %.3g ppm\n", stars.size(), std::string(to_string(treatment)).c_str(),
+                1e6 * (light / truth - 1.0));
+    EXPECT_LT(std::abs(light / truth - 1.0), 1e-6);
+  }
+}
+
+TEST(NeighbourCurvature, IsThatOfTheLightInTheAperture) {
+  Mission mission = test::bare_mission(40, 40);
+  mission.satellite.jitter.model = JitterModel::kRedNoise;
+  mission.satellite.jitter.yaw = Arcseconds(0.05);
+  EXPECT_EQ(Scene(mission, test::lab_catalogue({{21.2, 20.1, 1e6}})).summary().neighbour_curvature, 1.0);
+  EXPECT_EQ(Scene(mission, test::lab_catalogue({{11.2, 20.1, 1e6}, {31.2, 20.1, 1e6}})).summary().neighbour_curvature,
+            1.0)
+      << "far apart";
+  mission.ccd.full_well = Electrons(5e5);  // of the bright star, which is no target that matters
+  const std::vector<test::LabStar> stars{{21.2, 20.1, 1e6}, {17.9, 20.4, 4e8}};
+  const Scene scene(mission, test::lab_catalogue(stars));
+  // By hand: light of both and its second difference along x, in 3 and 5 px.
+  double most = 1.0;
+  for (const int side : {3, 5}) {
+    const Rectangle mask{21 - side / 2, 20 - side / 2, side, side};
+    const auto light = [&](double shift) {
+      double sum = 0.0;
+      std::vector<double> fractions(mask.size());
+      for (const test::LabStar& star : stars) {
+        scene.psf().integrate({star.x + shift, star.y}, mask, fractions);
+        for (const double f : fractions) sum += star.electrons * f;
+      }
+      return sum;
+    };
+    constexpr double kStep = 0.05;  // px
+    const double bend = std::abs(light(kStep) - 2.0 * light(0.0) + light(-kStep)) / (kStep * kStep);
+    const SceneSummary& s = scene.summary();
+    const double weight = s.flux_tolerance(1e6) / 1e6 / (s.flux_tolerance(light(0.0)) / light(0.0));
+    most = std::max(most, bend / light(0.0) / s.psf.curvature * weight);
+  }
+  std::printf("curvature: %.3f times a star's own, by hand %.3f\n", scene.summary().neighbour_curvature, most);
+  EXPECT_GT(most, 2.0);
+  EXPECT_NEAR(scene.summary().neighbour_curvature / most, 1.0, 0.05);
+}
+
 }  // namespace
 }  // namespace astroid

@@ -27,7 +27,7 @@ TEST(Columns, AllHaveANameAUnitOfTheProjectAndAMeaning) {
       EXPECT_EQ(column.name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_"), std::string::npos)
           << column.name;
       EXPECT_THAT(column.meaning, Not(IsEmpty())) << table.file << ": " << column.name;
-      EXPECT_THAT(column.unit, AnyOf("", "mag", "px", "e-", "ppm")) << column.name;
+      EXPECT_THAT(column.unit, AnyOf("", "mag", "px", "e-", "ppm", "s", "MiB")) << column.name;
     }
   }
 }

@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -31,9 +30,14 @@ Planned planned(const Mission& mission, const StarCatalogue& catalogue, double p
   return p;
 }
 
-std::array<std::int64_t, 3> exposures_of(const Mission& mission) {
-  const std::int64_t last = mission.simulation.exposures - 1;
-  return {0, last / 2, last};
+/// Spread over the run: the errors of some treatments of motion depend on where the spacecraft points.
+std::vector<std::int64_t> exposures_of(const Mission& mission) {
+  constexpr std::int64_t kMost = 9;
+  const std::int64_t count = std::min(kMost, mission.simulation.exposures);
+  std::vector<std::int64_t> exposures;
+  for (std::int64_t i = 0; i < count; ++i)
+    exposures.push_back(count > 1 ? i * (mission.simulation.exposures - 1) / (count - 1) : 0);
+  return exposures;
 }
 
 /// Light around each target in each of the exposures, background included; NaN where it is not all on the layout.
@@ -96,7 +100,10 @@ TradeoffRow measure(const Mission& mission, const StarCatalogue& catalogue, doub
   const std::span<const std::size_t> targets = p.scene->targets();
   for (std::size_t i = 0; i < sums.size(); ++i) {
     if (!std::isfinite(sums[i]) || !std::isfinite(reference[i])) continue;
-    const double flux = p.scene->stars()[targets[i % targets.size()]].electrons;
+    // Of the aperture, neighbours included, in which the star may be a small part: no less than the star's own share.
+    constexpr double kPixels = kMaskSide * kMaskSide;
+    const double own = p.scene->stars()[targets[i % targets.size()]].electrons;
+    const double flux = std::max(own, reference[i] - kPixels * p.scene->summary().background);
     const double error = std::abs(sums[i] - reference[i]);
     squares += std::pow(kMillionth * error / flux, 2);
     row.error_max = std::max(row.error_max, kMillionth * error / flux);

@@ -41,6 +41,7 @@ struct SceneSummary {
   int cameras = 1;
   double attitude_rms_px = 0.0;              ///< largest displacement rms of one axis anywhere on the frame
   double attitude_rms_in_exposure_px = 0.0;  ///< rms of the motion about its mean within one exposure
+  double neighbour_curvature = 1.0;          ///< factor of motion's second order beside brighter stars, 1 if all rests
   std::size_t variable_stars = 0;            ///< on the detector
   double largest_variation = 0.0;            ///< e- per exposure, of any of them
   std::size_t moved_stars = 0;               ///< that have a proper motion

@@ -29,7 +29,7 @@ struct TradeoffResult {
 /// of products.
 ///
 /// Errors are of fluxes in 3 × 3 px without any noise. Renderers: stars at 200 places of the middle pixel, and on a
-/// drift of 1.3 px. Accuracy: every target of the scene with its neighbours, in three exposures with the same attitude,
+/// drift of 1.3 px. Accuracy: every target of the scene with its neighbours, in nine exposures with the same attitude,
 /// against an accuracy of 0.001 ppm. Effects: the same draws with and without. Of several groups of cameras, the first.
 /// @param progress  told what is measured next; may be empty.
 /// @throws InputError, EnvironmentError
