@@ -5,9 +5,11 @@
 
 #include "astroid/catalogues/catalogue_reader.hpp"
 #include "astroid/core/csv.hpp"
+#include "astroid/core/effective_psf.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/photometry/field_photometry.hpp"
 #include "astroid/photometry/image_photometry.hpp"
+#include "astroid/photometry/psf_measurement.hpp"
 #include "commands/commands.hpp"
 #include "commands/configuration.hpp"
 
@@ -16,10 +18,11 @@ namespace astroid::commands {
 namespace {
 
 constexpr std::string_view kGaussian = "gaussian:";
+constexpr std::string_view kMeasured = "measured";
 
 /// gaussian:SIGMA_PX or a FITS file; nothing without --psf.
 std::shared_ptr<const PixelPsf> read_psf(const std::string& text) {
-  if (text.empty()) return nullptr;
+  if (text.empty() || text == kMeasured) return nullptr;
   if (text.starts_with(kGaussian)) {
     const std::optional<double> sigma = parse_number(text.substr(kGaussian.size()));
     if (!sigma)
@@ -29,6 +32,7 @@ std::shared_ptr<const PixelPsf> read_psf(const std::string& text) {
                                .message = "the width is not a number"});
     return make_gaussian_psf(*sigma);
   }
+  if (is_effective_psf(text)) return make_effective_psf(read_effective_psf(text));
   constexpr double kPpm = 1e-6;
   return make_prf_psf(read_psf_table(text), kPpm);
 }
@@ -84,17 +88,18 @@ int photometry(const PhotometryOptions& options) {
                              .value = options.method,
                              .expected = "--catalogue FILE, or --method psf with --psf",
                              .message = "without positions stars are found by their PSF"});
-  if (!options.psf.empty() && !options.psf.starts_with(kGaussian)) inputs.push_back(options.psf);
+  const bool measured_psf = options.psf == kMeasured;
+  if (!options.psf.empty() && !measured_psf && !options.psf.starts_with(kGaussian)) inputs.push_back(options.psf);
   require_files(inputs);
   ImagePhotometrySettings settings;
   settings.psf = read_psf(options.psf);
   if (options.method == "mask") settings.method = PhotometryMethod::kMask;
   if (options.method == "weighted") settings.method = PhotometryMethod::kWeighted;
   if (options.method == "psf") settings.method = PhotometryMethod::kPsf;
-  if (settings.method != PhotometryMethod::kAperture && settings.psf == nullptr)
+  if (settings.method != PhotometryMethod::kAperture && settings.psf == nullptr && !measured_psf)
     throw InputError(Problem{.parameter = "--method",
                              .value = options.method,
-                             .expected = "--psf FILE or --psf gaussian:SIGMA_PX with it",
+                             .expected = "--psf measured, --psf FILE or --psf gaussian:SIGMA_PX with it",
                              .message = "all but apertures need the PSF"});
   if (options.radius) settings.aperture_radius = Pixels(*options.radius);
   if (options.zero_point) settings.zero_point = Magnitude(*options.zero_point);
@@ -118,6 +123,12 @@ int photometry(const PhotometryOptions& options) {
     const ImageFile file = read_frame(image, read);
     for (const std::string& note : file.notes) fmt::print(stderr, "{}: {}\n", image, note);
     const SkyProjection* sky = file.sky ? &*file.sky : nullptr;
+    if (measured_psf) {
+      const MeasuredPsf measured = measure_psf(file.frame);
+      settings.psf = make_effective_psf(measured.psf);
+      fmt::print(stderr, "{}: PSF measured from {} stars, chi2 {:.3f}: {}\n", image, measured.stars, measured.chi2,
+                 settings.psf->description());
+    }
     const std::vector<SourceMeasurement> sources = blind ? measure_field(file.frame, sky, *settings.psf, field)
                                                          : measure_image(file.frame, sky, requests, settings);
     write_sources(output, sources);

@@ -10,6 +10,7 @@
 #include "astroid/core/photometric.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "field/field_fit.hpp"
+#include "field/field_pixels.hpp"
 #include "field/hidden_stars.hpp"
 
 namespace astroid {
@@ -19,7 +20,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLargestStamp = 40;      // px, half-side
 constexpr double kBlendedShare = 0.5;  // of the information about a flux that neighbours leave: error √2 larger
-constexpr double kQuantisation = 1.0 / 12.0;
 
 void check_settings(const FieldPhotometrySettings& settings) {
   if (settings.threshold > 0.0 && settings.rounds > 0) return;
@@ -27,40 +27,6 @@ void check_settings(const FieldPhotometrySettings& settings) {
                            .value = fmt::format("{}, {}", settings.threshold, settings.rounds),
                            .expected = "both more than 0",
                            .message = "nothing can be detected"});
-}
-
-// @returns false when no pixel can be used.
-bool fill_pixels(const Frame& frame, const BackgroundMap& mesh, detail::FieldPixels& pixels) {
-  const double gain = frame.header.gain.value();
-  const double bias = frame.header.bias.value();
-  const auto values = frame.pixels.view(0);
-  const auto flags = frame.flags.view(0);
-  const Rectangle& area = values.area();
-  constexpr unsigned kUnusable = 0xFFU & ~(pixel_flag::kTruth | pixel_flag::kShortRamp);
-  std::vector<double> level(static_cast<std::size_t>(area.nx));
-  bool any = false;
-  for (int j = 0; j < area.ny; ++j) {
-    mesh.level_row(area.y0 + j, level);
-    const auto row = values.row(area.y0 + j);
-    const auto flag = flags.row(area.y0 + j);
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const double sky = gain * (level[i] - bias);
-      pixels.sky.row(j)[i] = std::isfinite(sky) ? static_cast<float>(sky) : 0.0F;
-      if (!std::isfinite(row[i]) || (flag[i] & kUnusable) != 0U) continue;
-      pixels.electrons.row(j)[i] = static_cast<float>(gain * (static_cast<double>(row[i]) - bias));
-      pixels.usable.row(j)[i] = 1.0F;
-      any = true;
-    }
-  }
-  const double sky = std::max(0.0, gain * (mesh.median_level() - bias));
-  const double readout = frame.header.readout_noise.value();
-  const double stated = readout * readout + gain * gain * kQuantisation;
-  const double measured = gain * gain * mesh.median_rms() * mesh.median_rms();
-  // A sky that was subtracted before still has its noise. Crowding alone does not double what the header states.
-  constexpr double kDoubtful = 2.0;
-  pixels.read_variance = stated;
-  if (measured > kDoubtful * (stated + sky) || readout == 0.0) pixels.read_variance = std::max(stated, measured - sky);
-  return any;
 }
 
 std::uint32_t flags_of(const Frame& frame, const detail::ModelStar& star, int core) {
@@ -112,9 +78,8 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
   ASTROID_CHECK_EQ(area.y0, 0);
   const detail::PsfReach reach(psf, {area.x0 + 0.5 * area.nx, area.y0 + 0.5 * area.ny}, kLargestStamp);
   constexpr int kMargin = 8;  // px: stars may lie a little outside, and vectors are read whole
-  const detail::PaddedPlane empty(area.nx, area.ny, reach.most() + kMargin);
-  detail::FieldPixels pixels{empty, empty, empty, 0.0};
-  if (!fill_pixels(frame, BackgroundMap(frame, 0, settings.mesh), pixels)) return {};
+  detail::FieldPixels pixels = detail::field_pixels(frame, settings.mesh, reach.most() + kMargin);
+  if (!pixels.any) return {};
   const detail::FieldFitSettings fit_settings{settings.threshold, settings.rounds, settings.mesh.cell};
   detail::FieldFit fit(psf, reach, pixels, fit_settings);
   fit.run();

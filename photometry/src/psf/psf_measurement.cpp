@@ -1,0 +1,127 @@
+#include "astroid/photometry/psf_measurement.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include "astroid/core/error.hpp"
+#include "field/field_fit.hpp"
+#include "field/field_pixels.hpp"
+#include "psf/psf_fit.hpp"
+#include "psf/psf_gauge.hpp"
+#include "psf/psf_guess.hpp"
+#include "psf/psf_stars.hpp"
+
+namespace astroid {
+
+namespace {
+
+constexpr int kLargestStamp = 40;       // px, half-side
+constexpr int kMargin = 8;              // px
+constexpr std::size_t kLeastStars = 10;
+constexpr double kFwhmPerSigma = 2.3548200450309493;
+constexpr double kPixelVariance = 1.0 / 12.0;  // px²
+
+void check(const PsfMeasurementSettings& s) {
+  if (s.rounds > 0 && s.most_stars >= kLeastStars && s.most_order >= 0 && s.most_order <= 2 && s.snr > 0.0) return;
+  throw InputError(Problem{.parameter = "rounds, most stars, most order, snr",
+                           .value = fmt::format("{}, {}, {}, {}", s.rounds, s.most_stars, s.most_order, s.snr),
+                           .expected = fmt::format("> 0, at least {}, 0 to 2, > 0", kLeastStars),
+                           .message = "no PSF can be measured so"});
+}
+
+void require_stars(std::size_t count) {
+  if (count >= kLeastStars) return;
+  throw InputError(Problem{.parameter = "--psf",
+                           .value = fmt::format("measured, of {} stars", count),
+                           .expected = fmt::format("at least {} bright stars that stand alone, or a PSF that is given",
+                                                   kLeastStars),
+                           .message = "the PSF cannot be measured from this image"});
+}
+
+// Every fourth star is left out and foretold from the others. @returns the order that foretells best.
+int choose_order(const detail::PsfFit& fit, std::size_t stars, int most) {
+  constexpr std::size_t kFold = 4;
+  constexpr std::size_t kStarsPerTerm = 10;
+  constexpr double kSignificant = 2.0;
+  std::vector<char> use(stars, 1);
+  for (std::size_t i = 0; i < stars; i += kFold) use[i] = 0;
+  int best = 0;
+  std::vector<double> before = fit.chi2(fit.solve(0, use));
+  for (int order = 1; order <= most; ++order) {
+    const auto terms = static_cast<std::size_t>((order + 1) * (order + 2) / 2);
+    if (stars < kStarsPerTerm * terms) break;
+    const std::vector<double> after = fit.chi2(fit.solve(order, use));
+    double sum = 0.0;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < stars; i += kFold) {
+      const double gain = before[i] - after[i];
+      sum += gain;
+      squares += gain * gain;
+    }
+    if (!(sum > kSignificant * std::sqrt(squares))) break;
+    best = order;
+    before = after;
+  }
+  return best;
+}
+
+}  // namespace
+
+MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settings) {
+  check(settings);
+  ASTROID_CHECK_EQ(frame.pixels.layout().regions().size(), std::size_t{1});
+  const Rectangle area = frame.pixels.layout().regions()[0];
+  ASTROID_CHECK_EQ(area.x0, 0);
+  ASTROID_CHECK_EQ(area.y0, 0);
+  const detail::FieldPixels pixels = detail::field_pixels(frame, settings.mesh, kLargestStamp + kMargin);
+  double sigma = detail::guess_sigma(pixels);
+  if (!(sigma > 0.0)) require_stars(0);
+
+  const double wide = std::sqrt(sigma * sigma + kPixelVariance);
+  constexpr double kSamplesPerSigma = 2.2;  // a spline then misses 3e-4 of a Gaussian's peak
+  constexpr int kMostSamples = 4;
+  const int samples = std::clamp(static_cast<int>(std::ceil(kSamplesPerSigma / wide)), 2, kMostSamples);
+  constexpr double kGridFwhm = 4.0;
+  constexpr int kLeastReach = 6;  // px
+  constexpr int kMostReach = 24;
+  const int reach = std::clamp(static_cast<int>(std::ceil(kGridFwhm * kFwhmPerSigma * wide)), kLeastReach, kMostReach);
+  EffectivePsf present = detail::effective_gaussian(sigma, samples, reach * samples);
+  present.field_centre = {area.x0 + 0.5 * (area.nx - 1), area.y0 + 0.5 * (area.ny - 1)};
+  present.field_scale = {std::max(1.0, 0.5 * area.nx), std::max(1.0, 0.5 * area.ny)};
+  std::shared_ptr<const PixelPsf> psf = make_effective_psf(present);
+  MeasuredPsf result;
+  int order = 0;
+  for (int round = 0; round < settings.rounds; ++round) {
+    const bool first = round == 0;
+    const bool last = round + 1 == settings.rounds;
+    const detail::PsfReach stamps(*psf, present.field_centre, kLargestStamp);
+    // Only bright stars at first: with a wrong PSF what is left of them looks like more stars.
+    const detail::FieldFitSettings field_settings{.threshold = first ? 10.0 : 5.0, .rounds = first ? 1 : 2,
+                                                  .sky_cell = settings.mesh.cell};
+    detail::FieldFit field(*psf, stamps, pixels, field_settings);
+    field.run();
+    const std::vector<std::size_t> stars =
+        detail::choose_psf_stars(field.solver(), settings.snr, settings.most_stars);
+    require_stars(stars.size());
+    const detail::PsfFitSettings fit_settings{.model_error = first ? 0.05 : last ? 0.003 : 0.01};
+    const EffectivePsf prior = detail::effective_gaussian(sigma, samples, reach * samples);
+    const detail::PsfFit fit(field.solver(), stars, present, prior, fit_settings);
+    if (round == std::min(1, settings.rounds - 1)) order = choose_order(fit, stars.size(), settings.most_order);
+    present = fit.solve(order);
+    detail::fix_gauge(present, wide);
+    sigma = detail::nearest_sigma(present);
+    psf = make_effective_psf(present);
+    const std::vector<double> chi2 = fit.chi2(present);
+    result.stars = stars.size();
+    result.chi2 = std::accumulate(chi2.begin(), chi2.end(), 0.0) / static_cast<double>(fit.usable_pixels());
+  }
+  result.psf = std::move(present);
+  return result;
+}
+
+}  // namespace astroid
