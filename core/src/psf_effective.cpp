@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include "astroid/core/effective_psf.hpp"
@@ -17,27 +18,42 @@ namespace {
 
 constexpr std::size_t kMostTerms = 6;
 
-// Part of the grid that a box of pixels touches, with the polynomials of the field summed up.
-struct Section {
-  std::span<const double> values;
-  std::size_t stride = 0;
-  std::int64_t x0 = 0, x1 = 0, y0 = 0, y1 = 0;  // half-open, in samples
+using Terms = std::array<double, kMostTerms>;
+
+// The pixels of a box that the grid reaches, and where the splines of the first of them begin.
+struct Reached {
+  int x0 = 0, x1 = 0, y0 = 0, y1 = 0;  // half-open, from the box's first pixel
+  int sample_x = 0, sample_y = 0;      // on the padded grid
+  [[nodiscard]] std::size_t nx() const { return static_cast<std::size_t>(x1 - x0); }
+  [[nodiscard]] bool empty() const { return x1 <= x0 || y1 <= y0; }
 };
 
 class EffectivePixelPsf final : public PixelPsf {
  public:
-  explicit EffectivePixelPsf(EffectivePsf psf) : psf_(std::move(psf)) {}
+  explicit EffectivePixelPsf(EffectivePsf psf)
+      : psf_(std::move(psf)),
+        rows_(psf_.side() + 2 * kPad),
+        run_(static_cast<std::size_t>((rows_ + psf_.samples_per_pixel - 1) / psf_.samples_per_pixel)),
+        size_(place(0, rows_)) {
+    phases_.assign(psf_.terms() * size_, 0.0);
+    std::size_t i = 0;
+    for (std::size_t k = 0; k < psf_.terms(); ++k)
+      for (int y = 0; y < psf_.side(); ++y)
+        for (int x = 0; x < psf_.side(); ++x) phases_[k * size_ + place(kPad + x, kPad + y)] = psf_.coefficients[i++];
+  }
 
   void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const override {
     ASTROID_CHECK_EQ(fractions.size(), box.size());
     if (!usable(centre, fractions)) return;
     const EffectiveAxis x = effective_axis(psf_, centre.x);
     const EffectiveAxis y = effective_axis(psf_, centre.y);
-    std::array<double, kMostTerms> phi{};
+    const Reached reached = reach(x, y, box);
+    if (reached.empty()) return;
+    Terms phi{};
     field_terms(psf_, centre, phi.data());
-    std::vector<double> sums;
-    const Section section = cut(x, y, box, phi, sums);
-    sample(section, x, y, box, x.weights.weight, y.weights.weight, 1.0, fractions);
+    std::vector<double> scratch;
+    const double* plane = combine(phi, reached, scratch);
+    sample(plane, reached, box, x.weights.weight, y.weights.weight, 1.0, fractions);
   }
 
   void integrate_gradient(PixelPosition centre, Rectangle box, std::span<double> dpdx,
@@ -48,23 +64,21 @@ class EffectivePixelPsf final : public PixelPsf {
     if (!usable(centre, dpdy) || !good) return;
     const EffectiveAxis x = effective_axis(psf_, centre.x);
     const EffectiveAxis y = effective_axis(psf_, centre.y);
-    std::array<double, kMostTerms> phi{};
+    const Reached reached = reach(x, y, box);
+    if (reached.empty()) return;
+    Terms phi{};
     field_terms(psf_, centre, phi.data());
-    std::vector<double> sums;
-    const Section section = cut(x, y, box, phi, sums);
+    std::vector<double> scratch;
+    const double* plane = combine(phi, reached, scratch);
     const double n = psf_.samples_per_pixel;  // a star that moves on moves the pixel back
-    sample(section, x, y, box, x.weights.slope, y.weights.weight, -n, dpdx);
-    sample(section, x, y, box, x.weights.weight, y.weights.slope, -n, dpdy);
+    sample(plane, reached, box, x.weights.slope, y.weights.weight, -n, dpdx);
+    sample(plane, reached, box, x.weights.weight, y.weights.slope, -n, dpdy);
     if (psf_.order == 0) return;
-    std::array<double, kMostTerms> along_x{};
-    std::array<double, kMostTerms> along_y{};
+    Terms along_x{};
+    Terms along_y{};
     slopes_of_terms(centre, along_x, along_y);
-    std::vector<double> part(box.size());
-    for (const auto& [slopes, result] : {std::pair{&along_x, dpdx}, std::pair{&along_y, dpdy}}) {
-      const Section varying = cut(x, y, box, *slopes, sums);
-      sample(varying, x, y, box, x.weights.weight, y.weights.weight, 1.0, part);
-      for (std::size_t i = 0; i < part.size(); ++i) result[i] += part[i];
-    }
+    sample(combine(along_x, reached, scratch), reached, box, x.weights.weight, y.weights.weight, 1.0, dpdx);
+    sample(combine(along_y, reached, scratch), reached, box, x.weights.weight, y.weights.weight, 1.0, dpdy);
   }
 
   [[nodiscard]] double stamp_half_width(double /*lost*/) const override {
@@ -94,77 +108,86 @@ class EffectivePixelPsf final : public PixelPsf {
     return finite && std::abs(centre.x) < kFarthest && std::abs(centre.y) < kFarthest;
   }
 
-  [[nodiscard]] std::int64_t first_sample(const EffectiveAxis& axis, int pixel) const {
-    return axis.first + static_cast<std::int64_t>(psf_.samples_per_pixel) * (static_cast<std::int64_t>(pixel) - axis.pixel);
+  // A pixel of the grid's rim has splines beyond it: with zeros there it needs no tests.
+  static constexpr int kPad = 4;
+
+  [[nodiscard]] std::size_t place(int x, int y) const {
+    const int step = psf_.samples_per_pixel;
+    return (static_cast<std::size_t>(y) * static_cast<std::size_t>(step) + static_cast<std::size_t>(x % step)) * run_ +
+           static_cast<std::size_t>(x / step);
   }
 
-  [[nodiscard]] Section cut(const EffectiveAxis& x, const EffectiveAxis& y, const Rectangle& box,
-                            const std::array<double, kMostTerms>& phi, std::vector<double>& sums) const {
-    Section s;
-    const auto side = static_cast<std::int64_t>(psf_.side());
-    s.x0 = std::clamp<std::int64_t>(first_sample(x, box.x0), 0, side);
-    s.x1 = std::clamp<std::int64_t>(first_sample(x, box.x1() - 1) + 4, s.x0, side);
-    s.y0 = std::clamp<std::int64_t>(first_sample(y, box.y0), 0, side);
-    s.y1 = std::clamp<std::int64_t>(first_sample(y, box.y1() - 1) + 4, s.y0, side);
-    const auto nx = static_cast<std::size_t>(s.x1 - s.x0);
-    const auto ny = static_cast<std::size_t>(s.y1 - s.y0);
-    const auto width = static_cast<std::size_t>(side);
-    sums.assign(nx * ny, 0.0);
-    s.stride = nx;
-    for (std::size_t k = 0; k < psf_.terms(); ++k) {
-      if (phi[k] == 0.0) continue;
-      const double* plane = psf_.coefficients.data() + k * psf_.plane_size();
-      for (std::size_t j = 0; j < ny; ++j) {
-        const double* from = plane + (static_cast<std::size_t>(s.y0) + j) * width + static_cast<std::size_t>(s.x0);
-        double* to = sums.data() + j * nx;
-        for (std::size_t i = 0; i < nx; ++i) to[i] += phi[k] * from[i];
-      }
-    }
-    s.values = sums;
-    return s;
+  // Pixels first … end of n, of those whose first spline is number start + step i, that have a spline on the grid.
+  [[nodiscard]] std::pair<int, int> reach_of(const EffectiveAxis& axis, int first_pixel, int n, int& sample) const {
+    const std::int64_t step = psf_.samples_per_pixel;
+    const std::int64_t start = axis.first + step * (static_cast<std::int64_t>(first_pixel) - axis.pixel);
+    const std::int64_t below = -3 - start;  // at least so many samples on
+    const std::int64_t above = psf_.side() - 1 - start;
+    const auto up = [step](std::int64_t v) { return v > 0 ? (v + step - 1) / step : std::int64_t{0}; };
+    const std::int64_t begin = std::min<std::int64_t>(up(below), n);
+    const std::int64_t end = above < 0 ? begin : std::clamp<std::int64_t>(above / step + 1, begin, n);
+    sample = static_cast<int>(kPad + (begin < end ? start + step * begin : 0));
+    return {static_cast<int>(begin), static_cast<int>(end)};
   }
 
-  void sample(const Section& s, const EffectiveAxis& x, const EffectiveAxis& y, const Rectangle& box,
-              const double* x_weight, const double* y_weight, double factor, std::span<double> result) const {
-    std::ranges::fill(result, 0.0);
-    if (s.values.empty()) return;
-    const auto width = static_cast<std::size_t>(box.nx);
-    const std::int64_t n = psf_.samples_per_pixel;
-    const std::int64_t start = first_sample(x, box.x0);
-    // Pixels all of whose four samples are on the grid need no tests.
-    const auto inner0 = std::clamp<std::int64_t>((s.x0 - start + n - 1) / n, 0, box.nx);
-    const auto inner1 = std::clamp<std::int64_t>((s.x1 - 4 - start + n) / n, inner0, box.nx);
-    std::vector<double> rows(static_cast<std::size_t>(s.y1 - s.y0) * width, 0.0);
-    for (std::int64_t r = s.y0; r < s.y1; ++r) {
-      const double* in = s.values.data() + static_cast<std::size_t>(r - s.y0) * s.stride;
-      double* out = rows.data() + static_cast<std::size_t>(r - s.y0) * width;
-      for (std::int64_t i = 0; i < box.nx; ++i) {
-        const std::int64_t first = start + n * i - s.x0;
-        double sum = 0.0;
-        if (i >= inner0 && i < inner1) {
-          const double* c = in + first;
-          sum = x_weight[0] * c[0] + x_weight[1] * c[1] + x_weight[2] * c[2] + x_weight[3] * c[3];
-        } else {
-          for (std::int64_t a = 0; a < 4; ++a)
-            if (first + a >= 0 && first + a < static_cast<std::int64_t>(s.stride)) sum += x_weight[a] * in[first + a];
+  [[nodiscard]] Reached reach(const EffectiveAxis& x, const EffectiveAxis& y, const Rectangle& box) const {
+    Reached r;
+    std::tie(r.x0, r.x1) = reach_of(x, box.x0, box.nx, r.sample_x);
+    std::tie(r.y0, r.y1) = reach_of(y, box.y0, box.ny, r.sample_y);
+    return r;
+  }
+
+  [[nodiscard]] int last_row(const Reached& r) const {
+    return r.sample_y + psf_.samples_per_pixel * (r.y1 - r.y0 - 1) + 4;
+  }
+
+  // The plane of coefficients at a place of the field: that of the file, or a sum in `scratch`.
+  const double* combine(const Terms& phi, const Reached& reached, std::vector<double>& scratch) const {
+    if (psf_.order == 0) return phases_.data();
+    scratch.resize(size_);
+    const int step = psf_.samples_per_pixel;
+    const auto first = static_cast<std::size_t>(reached.sample_x / step);
+    const int last = reached.sample_x + step * (reached.x1 - reached.x0 - 1) + 3;
+    const std::size_t length = static_cast<std::size_t>(last / step) + 1 - first;
+    for (int row = reached.sample_y; row < last_row(reached); ++row)
+      for (int phase = 0; phase < step; ++phase) {
+        const std::size_t begin = place(phase, row) + first;
+        double* sum = scratch.data() + begin;
+        std::fill_n(sum, length, 0.0);
+        for (std::size_t k = 0; k < psf_.terms(); ++k) {
+          const double* c = phases_.data() + k * size_ + begin;
+          for (std::size_t i = 0; i < length; ++i) sum[i] += phi[k] * c[i];
         }
-        out[static_cast<std::size_t>(i)] = sum;
       }
+    return scratch.data();
+  }
+
+  // Adds the splines' sum in every pixel that the grid reaches.
+  void sample(const double* plane, const Reached& reached, const Rectangle& box, const double* x_weight,
+              const double* y_weight, double factor, std::span<double> result) const {
+    const std::size_t n = reached.nx();
+    const int step = psf_.samples_per_pixel;
+    const int first = reached.sample_y;
+    std::vector<double> rows(static_cast<std::size_t>(last_row(reached) - first) * n);
+    for (int r = first; r < last_row(reached); ++r) {
+      double* out = rows.data() + static_cast<std::size_t>(r - first) * n;
+      const double* c0 = plane + place(reached.sample_x, r);
+      const double* c1 = plane + place(reached.sample_x + 1, r);
+      const double* c2 = plane + place(reached.sample_x + 2, r);
+      const double* c3 = plane + place(reached.sample_x + 3, r);
+      for (std::size_t i = 0; i < n; ++i)
+        out[i] = x_weight[0] * c0[i] + x_weight[1] * c1[i] + x_weight[2] * c2[i] + x_weight[3] * c3[i];
     }
-    for (int j = 0; j < box.ny; ++j) {
-      const std::int64_t first = first_sample(y, box.y0 + j);
-      double* out = result.data() + static_cast<std::size_t>(j) * width;
-      for (std::int64_t b = 0; b < 4; ++b) {
-        if (first + b < s.y0 || first + b >= s.y1) continue;
-        const double w = factor * y_weight[b];
-        const double* in = rows.data() + static_cast<std::size_t>(first + b - s.y0) * width;
-        for (std::size_t i = 0; i < width; ++i) out[i] += w * in[i];
-      }
+    for (int j = reached.y0; j < reached.y1; ++j) {
+      double* out = result.data() + static_cast<std::size_t>(j) * static_cast<std::size_t>(box.nx) + reached.x0;
+      const double* in = rows.data() + static_cast<std::size_t>(step * (j - reached.y0)) * n;
+      for (std::size_t i = 0; i < n; ++i)
+        out[i] += factor * (y_weight[0] * in[i] + y_weight[1] * in[n + i] + y_weight[2] * in[2 * n + i] +
+                            y_weight[3] * in[3 * n + i]);
     }
   }
 
-  void slopes_of_terms(PixelPosition place, std::array<double, kMostTerms>& along_x,
-                       std::array<double, kMostTerms>& along_y) const {
+  void slopes_of_terms(PixelPosition place, Terms& along_x, Terms& along_y) const {
     const double u = (place.x - psf_.field_centre.x) / psf_.field_scale.x;
     const double v = (place.y - psf_.field_centre.y) / psf_.field_scale.y;
     const double du = std::abs(u) < 1.0 ? 1.0 / psf_.field_scale.x : 0.0;
@@ -176,6 +199,12 @@ class EffectivePixelPsf final : public PixelPsf {
   }
 
   EffectivePsf psf_;
+  // Samples that are a whole number of pixels apart are side by side: a row of the padded grid is samples_per_pixel
+  // runs of run_ samples.
+  int rows_;
+  std::size_t run_;
+  std::size_t size_;
+  std::vector<double> phases_;
 };
 
 }  // namespace

@@ -2,22 +2,31 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numeric>
 
 namespace astroid::detail {
 
 namespace {
 
-// What the prior may be wrong by: this share of itself, and this share of its largest coefficient.
+// What the prior may be wrong by: this share of itself, and this share of its largest coefficient, which falls with
+// the distance from the star as wings of diffraction do.
 constexpr double kPriorShare = 0.5;
 constexpr double kPriorFloor = 0.02;
+constexpr double kWingSlope = 3.0;
 // The same of second differences along the grid, relative to the above.
 constexpr double kRoughness = 0.3;
-// Variation over the field, relative to the above.
-constexpr double kVariation = 0.3;
+// Variation over the field, relative to the above: of the terms of first and of second order.
+constexpr std::array<double, 3> kVariation{1.0, 0.3, 0.1};
+
+// Of 1, u, v, u², uv, v².
+constexpr std::size_t order_of(std::size_t term) { return term == 0 ? 0 : term < 3 ? 1 : 2; }
+double variation_precision(std::size_t term) {
+  const double v = kVariation[order_of(term)];
+  return 1.0 / (v * v);
+}
 // Residuals beyond this many sigma lose weight.
 constexpr double kRobust = 3.0;
-constexpr double kTolerance = 1e-3;
 
 }  // namespace
 
@@ -25,22 +34,35 @@ PsfFit::PsfFit(const FieldSolver& field, std::span<const std::size_t> stars, con
                const EffectivePsf& prior, const PsfFitSettings& settings)
     : present_(present),
       prior_(prior),
-      half_(present.half / present.samples_per_pixel),
-      side_(static_cast<std::size_t>(2 * half_ + 1)),
-      most_iterations_(settings.most_iterations) {
-  const std::size_t n = stars.size() * side_ * side_;
-  root_weight_.resize(n);
-  residual_.resize(n);
-  basis_.resize(kFree * n);
+      settings_(settings),
+      pad_(3 * present.samples_per_pixel + 4),
+      rows_(present.side() + 2 * pad_),
+      run_(static_cast<std::size_t>((rows_ + present.samples_per_pixel - 1) / present.samples_per_pixel)) {
   const double largest = *std::ranges::max_element(prior_.coefficients);
-  for (const double c : prior_.coefficients) {
-    const double deviation = kPriorShare * std::abs(c) + kPriorFloor * largest;
-    precision_.push_back(1.0 / (deviation * deviation));
+  const double unit = std::max(1.0, field.reach().fwhm()) * present.samples_per_pixel;
+  std::size_t i = 0;
+  for (int y = -present.half; y <= present.half; ++y)
+    for (int x = -present.half; x <= present.half; ++x) {
+      const double square = (static_cast<double>(x) * x + static_cast<double>(y) * y) / (unit * unit);
+      const double wing = std::pow(1.0 + square, -0.5 * kWingSlope);
+      const double deviation = kPriorShare * std::abs(prior_.coefficients[i++]) + kPriorFloor * largest * wing;
+      precision_.push_back(1.0 / (deviation * deviation));
+    }
+  std::vector<double> fluxes;
+  for (const std::size_t index : stars) fluxes.push_back(field.stars()[index].flux);
+  double least = 0.0;
+  if (fluxes.size() > settings.whole_stars && settings.whole_stars > 0) {
+    const auto nth = fluxes.begin() + static_cast<std::ptrdiff_t>(settings.whole_stars - 1);
+    std::ranges::nth_element(fluxes, nth, std::greater<>());
+    least = *nth;
   }
-  for (const std::size_t index : stars) add_star(field, index, settings);
+  const int whole = present.half / present.samples_per_pixel;
+  const int core = std::min(whole, field.reach().core() + 1);
+  for (const std::size_t index : stars)
+    add_star(field, index, field.stars()[index].flux >= least ? whole : core, settings);
 }
 
-void PsfFit::add_star(const FieldSolver& field, std::size_t index, const PsfFitSettings& settings) {
+void PsfFit::add_star(const FieldSolver& field, std::size_t index, int half, const PsfFitSettings& settings) {
   const ModelStar& model = field.stars()[index];
   const EffectiveAxis ax = effective_axis(present_, model.x);
   const EffectiveAxis ay = effective_axis(present_, model.y);
@@ -51,25 +73,30 @@ void PsfFit::add_star(const FieldSolver& field, std::size_t index, const PsfFitS
   all.field_scale = present_.field_scale;
   field_terms(all, {model.x, model.y}, star.phi.data());
   star.flux = model.flux;
-  star.start_x = ax.first - half_ * present_.samples_per_pixel;
-  star.start_y = ay.first - half_ * present_.samples_per_pixel;
+  star.side = 2 * half + 1;
+  star.start_x = pad_ + ax.first - half * present_.samples_per_pixel;
+  star.start_y = pad_ + ay.first - half * present_.samples_per_pixel;
   std::copy_n(ax.weights.weight, 4, star.wx.begin());
   std::copy_n(ay.weights.weight, 4, star.wy.begin());
-  star.offset = stars_.size() * side_ * side_;
-  const int x0 = ax.pixel - half_;
-  const int y0 = ay.pixel - half_;
-  const std::size_t n = side_ * side_;
+  star.offset = root_weight_.size();
+  const int x0 = ax.pixel - half;
+  const int y0 = ay.pixel - half;
+  const std::size_t n = star.pixels();
+  const auto side = static_cast<std::size_t>(star.side);
+  root_weight_.resize(star.offset + n);
+  residual_.resize(star.offset + n);
+  basis_.resize(kFree * (star.offset + n));
   std::vector<double> p(n);
   std::vector<double> px(n);
   std::vector<double> py(n);
-  const Rectangle box{x0, y0, static_cast<int>(side_), static_cast<int>(side_)};
+  const Rectangle box{x0, y0, star.side, star.side};
   field.psf().integrate({model.x, model.y}, box, p);
   field.psf().integrate_gradient({model.x, model.y}, box, px, py);
-  for (std::size_t j = 0; j < side_; ++j) {
+  for (std::size_t j = 0; j < side; ++j) {
     const int y = y0 + static_cast<int>(j);
-    for (std::size_t i = 0; i < side_; ++i) {
+    for (std::size_t i = 0; i < side; ++i) {
       const int x = x0 + static_cast<int>(i);
-      const std::size_t k = j * side_ + i;
+      const std::size_t k = j * side + i;
       const auto weight = static_cast<double>(*field.weight().at(x, y));
       const auto residual = static_cast<double>(*field.residual().at(x, y));
       double root = 0.0;
@@ -119,78 +146,120 @@ void PsfFit::project(const Star& star, std::span<double> pixels) const {
   }
 }
 
-void PsfFit::combine(const Star& star, std::span<const double> coefficients, std::size_t terms,
-                     std::vector<double>& plane) const {
-  const std::size_t n = present_.plane_size();
-  plane.assign(coefficients.begin(), coefficients.begin() + static_cast<std::ptrdiff_t>(n));
-  for (std::size_t k = 1; k < terms; ++k) {
-    const double* c = coefficients.data() + k * n;
-    for (std::size_t i = 0; i < n; ++i) plane[i] += star.phi[k] * c[i];
+std::span<const double> PsfFit::of(const Star& star, const std::vector<double>& values) const {
+  return std::span(values).subspan(star.offset, star.pixels());
+}
+
+std::size_t PsfFit::place(int x, int y) const {
+  const int step = present_.samples_per_pixel;
+  const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(step) + static_cast<std::size_t>(x % step);
+  return row * run_ + static_cast<std::size_t>(x / step);
+}
+
+std::vector<double> PsfFit::spread(std::span<const double> coefficients, std::size_t terms) const {
+  const std::size_t size = place(0, rows_);
+  std::vector<double> phases(terms * size, 0.0);
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < terms; ++k)
+    for (int y = 0; y < present_.side(); ++y)
+      for (int x = 0; x < present_.side(); ++x) phases[k * size + place(pad_ + x, pad_ + y)] = coefficients[i++];
+  return phases;
+}
+
+void PsfFit::gather(std::span<const double> phases, std::size_t terms, std::span<double> coefficients) const {
+  const std::size_t size = place(0, rows_);
+  std::size_t i = 0;
+  for (std::size_t k = 0; k < terms; ++k)
+    for (int y = 0; y < present_.side(); ++y)
+      for (int x = 0; x < present_.side(); ++x) coefficients[i++] = phases[k * size + place(pad_ + x, pad_ + y)];
+}
+
+// Calls with the begin and the length of every run of samples that the star's pixels need.
+template <class Visit>
+void PsfFit::for_each_run(const Star& star, Visit visit) const {
+  const int step = present_.samples_per_pixel;
+  const int last_x = star.start_x + step * (star.side - 1) + 3;
+  const int last_y = star.start_y + step * (star.side - 1) + 3;
+  const auto first = static_cast<std::size_t>(star.start_x / step);
+  const std::size_t length = static_cast<std::size_t>(last_x / step) + 1 - first;
+  for (int y = star.start_y; y <= last_y; ++y)
+    for (int phase = 0; phase < step; ++phase) visit(place(phase, y) + first, length);
+}
+
+void PsfFit::combine(const Star& star, std::span<const double> phases, std::size_t terms, std::span<double> sum) const {
+  const std::size_t size = sum.size();
+  for_each_run(star, [&](std::size_t begin, std::size_t length) {
+    double* out = sum.data() + begin;
+    std::copy_n(phases.data() + begin, length, out);
+    for (std::size_t k = 1; k < terms; ++k) {
+      const double* c = phases.data() + k * size + begin;
+      for (std::size_t i = 0; i < length; ++i) out[i] += star.phi[k] * c[i];
+    }
+  });
+}
+
+void PsfFit::add_terms(const Star& star, std::span<double> sum, std::size_t terms, std::span<double> phases) const {
+  const std::size_t size = sum.size();
+  for_each_run(star, [&](std::size_t begin, std::size_t length) {
+    double* in = sum.data() + begin;
+    for (std::size_t k = 0; k < terms; ++k) {
+      double* c = phases.data() + k * size + begin;
+      for (std::size_t i = 0; i < length; ++i) c[i] += star.phi[k] * in[i];
+    }
+    std::fill_n(in, length, 0.0);
+  });
+}
+
+void PsfFit::forward(const Star& star, std::span<const double> phases, std::span<double> pixels) const {
+  const int step = present_.samples_per_pixel;
+  const auto side = static_cast<std::size_t>(star.side);
+  const int first_row = star.start_y;
+  const int last_row = star.start_y + step * (star.side - 1) + 4;
+  std::vector<double>& rows = scratch_;
+  rows.resize(static_cast<std::size_t>(last_row - first_row) * side);
+  for (int r = first_row; r < last_row; ++r) {
+    double* out = rows.data() + static_cast<std::size_t>(r - first_row) * side;
+    const double* c0 = phases.data() + place(star.start_x, r);
+    const double* c1 = phases.data() + place(star.start_x + 1, r);
+    const double* c2 = phases.data() + place(star.start_x + 2, r);
+    const double* c3 = phases.data() + place(star.start_x + 3, r);
+    for (std::size_t i = 0; i < side; ++i)
+      out[i] = star.wx[0] * c0[i] + star.wx[1] * c1[i] + star.wx[2] * c2[i] + star.wx[3] * c3[i];
+  }
+  const double* root = root_weight_.data() + star.offset;
+  std::array<double, 4> w{};
+  for (std::size_t b = 0; b < 4; ++b) w[b] = star.flux * star.wy[b];
+  for (std::size_t j = 0; j < side; ++j) {
+    double* out = pixels.data() + j * side;
+    const double* in = rows.data() + static_cast<std::size_t>(step) * j * side;
+    for (std::size_t i = 0; i < side; ++i)
+      out[i] = root[j * side + i] *
+               (w[0] * in[i] + w[1] * in[side + i] + w[2] * in[2 * side + i] + w[3] * in[3 * side + i]);
   }
 }
 
-void PsfFit::forward(const Star& star, std::span<const double> plane, std::span<double> pixels) const {
-  const int grid = present_.side();
+void PsfFit::backward(const Star& star, std::span<const double> pixels, std::span<double> phases) const {
   const int step = present_.samples_per_pixel;
-  const auto width = static_cast<std::size_t>(grid);
-  std::vector<double> rows(width * side_);
-  const auto inside = [grid](int i) { return i >= 0 && i < grid; };
-  for (int r = 0; r < grid; ++r) {
-    const double* c = plane.data() + static_cast<std::size_t>(r) * width;
-    double* out = rows.data() + static_cast<std::size_t>(r) * side_;
-    for (std::size_t i = 0; i < side_; ++i) {
-      const int first = star.start_x + step * static_cast<int>(i);
-      double sum = 0.0;
-      if (first >= 0 && first + 3 < grid) {
-        const double* s = c + first;
-        sum = star.wx[0] * s[0] + star.wx[1] * s[1] + star.wx[2] * s[2] + star.wx[3] * s[3];
-      } else {
-        for (int a = 0; a < 4; ++a)
-          if (inside(first + a)) sum += star.wx[static_cast<std::size_t>(a)] * c[first + a];
-      }
-      out[i] = sum;
-    }
-  }
+  const auto side = static_cast<std::size_t>(star.side);
+  const int first_row = star.start_y;
+  const int last_row = star.start_y + step * (star.side - 1) + 4;
+  std::vector<double>& rows = scratch_;
+  rows.assign(static_cast<std::size_t>(last_row - first_row) * side, 0.0);
   const double* root = root_weight_.data() + star.offset;
-  for (std::size_t j = 0; j < side_; ++j) {
-    double* out = pixels.data() + j * side_;
-    std::fill_n(out, side_, 0.0);
-    for (int b = 0; b < 4; ++b) {
-      const int r = star.start_y + step * static_cast<int>(j) + b;
-      if (!inside(r)) continue;
-      const double w = star.flux * star.wy[static_cast<std::size_t>(b)];
-      const double* in = rows.data() + static_cast<std::size_t>(r) * side_;
-      for (std::size_t i = 0; i < side_; ++i) out[i] += w * in[i];
-    }
-    for (std::size_t i = 0; i < side_; ++i) out[i] *= root[j * side_ + i];
-  }
-}
-
-void PsfFit::backward(const Star& star, std::span<const double> pixels, std::span<double> plane) const {
-  const int grid = present_.side();
-  const int step = present_.samples_per_pixel;
-  const auto width = static_cast<std::size_t>(grid);
-  std::vector<double> rows(width * side_, 0.0);
-  const auto inside = [grid](int i) { return i >= 0 && i < grid; };
-  const double* root = root_weight_.data() + star.offset;
-  std::vector<double> weighted(side_);
-  for (std::size_t j = 0; j < side_; ++j) {
-    for (std::size_t i = 0; i < side_; ++i) weighted[i] = star.flux * root[j * side_ + i] * pixels[j * side_ + i];
-    for (int b = 0; b < 4; ++b) {
-      const int r = star.start_y + step * static_cast<int>(j) + b;
-      if (!inside(r)) continue;
-      const double w = star.wy[static_cast<std::size_t>(b)];
-      double* out = rows.data() + static_cast<std::size_t>(r) * side_;
-      for (std::size_t i = 0; i < side_; ++i) out[i] += w * weighted[i];
+  for (std::size_t j = 0; j < side; ++j) {
+    const double* in = pixels.data() + j * side;
+    for (std::size_t b = 0; b < 4; ++b) {
+      const double w = star.flux * star.wy[b];
+      double* out = rows.data() + (static_cast<std::size_t>(step) * j + b) * side;
+      for (std::size_t i = 0; i < side; ++i) out[i] += w * root[j * side + i] * in[i];
     }
   }
-  for (int r = 0; r < grid; ++r) {
-    double* c = plane.data() + static_cast<std::size_t>(r) * width;
-    const double* in = rows.data() + static_cast<std::size_t>(r) * side_;
-    for (std::size_t i = 0; i < side_; ++i) {
-      const int first = star.start_x + step * static_cast<int>(i);
-      for (int a = 0; a < 4; ++a)
-        if (inside(first + a)) c[first + a] += star.wx[static_cast<std::size_t>(a)] * in[i];
+  for (int r = first_row; r < last_row; ++r) {
+    const double* in = rows.data() + static_cast<std::size_t>(r - first_row) * side;
+    for (int a = 0; a < 4; ++a) {
+      double* c = phases.data() + place(star.start_x + a, r);
+      const double w = star.wx[static_cast<std::size_t>(a)];
+      for (std::size_t i = 0; i < side; ++i) c[i] += w * in[i];
     }
   }
 }
@@ -200,7 +269,7 @@ void PsfFit::add_prior(std::span<const double> v, std::size_t terms, std::span<d
   const auto width = static_cast<std::size_t>(present_.side());
   constexpr double kRough = 1.0 / (kRoughness * kRoughness);
   for (std::size_t k = 0; k < terms; ++k) {
-    const double scale = k == 0 ? 1.0 : 1.0 / (kVariation * kVariation);
+    const double scale = variation_precision(k);
     const double* in = v.data() + k * n;
     double* out = product.data() + k * n;
     for (std::size_t i = 0; i < n; ++i) out[i] += scale * precision_[i] * in[i];
@@ -221,51 +290,48 @@ void PsfFit::add_prior(std::span<const double> v, std::size_t terms, std::span<d
 
 void PsfFit::multiply(std::span<const double> v, std::size_t terms, std::span<const char> use,
                       std::span<double> product) const {
-  std::ranges::fill(product, 0.0);
-  const std::size_t n = present_.plane_size();
-  std::vector<double> plane(n);
-  std::vector<double> pixels(side_ * side_);
+  const std::vector<double> in = spread(v, terms);
+  std::vector<double> out(in.size(), 0.0);
+  std::vector<double> sum(in.size() / terms);
+  std::vector<double> pixels;
   for (std::size_t s = 0; s < stars_.size(); ++s) {
     if (!use.empty() && use[s] == 0) continue;
     const Star& star = stars_[s];
-    if (terms == 1) {
-      forward(star, v, pixels);
-      project(star, pixels);
-      backward(star, pixels, product);
-      continue;
-    }
-    combine(star, v, terms, plane);
-    forward(star, plane, pixels);
+    pixels.resize(star.pixels());
+    if (terms > 1) combine(star, in, terms, sum);
+    forward(star, terms > 1 ? std::span<const double>(sum) : std::span<const double>(in), pixels);
     project(star, pixels);
-    std::ranges::fill(plane, 0.0);
-    backward(star, pixels, plane);
-    for (std::size_t k = 0; k < terms; ++k)
-      for (std::size_t i = 0; i < n; ++i) product[k * n + i] += star.phi[k] * plane[i];
+    if (terms > 1) for_each_run(star, [&](std::size_t i, std::size_t n) { std::fill_n(sum.data() + i, n, 0.0); });
+    backward(star, pixels, terms > 1 ? std::span<double>(sum) : std::span<double>(out));
+    if (terms > 1) add_terms(star, sum, terms, out);
   }
+  gather(out, terms, product);
   add_prior(v, terms, product);
 }
 
 std::vector<double> PsfFit::diagonal(std::size_t terms, std::span<const char> use) const {
   const std::size_t n = present_.plane_size();
-  std::vector<double> sum(terms * n, 0.0);
-  std::vector<double> plane(n);
-  std::vector<double> ones(side_ * side_);
+  const std::size_t size = place(0, rows_);
+  std::vector<double> phases(terms * size, 0.0);
+  std::vector<double> plane(size);
+  std::vector<double> ones;
   for (std::size_t s = 0; s < stars_.size(); ++s) {
     if (!use.empty() && use[s] == 0) continue;
     // F² w B²: the weights once more in the role of the pixels, and splines squared.
     Star star = stars_[s];
     for (double& w : star.wx) w *= w;
     for (double& w : star.wy) w *= w;
+    for (double& p : star.phi) p *= p;
+    ones.resize(star.pixels());
     for (std::size_t i = 0; i < ones.size(); ++i) ones[i] = star.flux * root_weight_[star.offset + i];
-    std::ranges::fill(plane, 0.0);
     backward(star, ones, plane);
-    for (std::size_t k = 0; k < terms; ++k)
-      for (std::size_t i = 0; i < n; ++i) sum[k * n + i] += star.phi[k] * star.phi[k] * plane[i];
+    add_terms(star, plane, terms, phases);
   }
+  std::vector<double> sum(terms * n);
+  gather(phases, terms, sum);
   constexpr double kSecondDifferences = 12.0;  // 1 + 4 + 1 along both axes
   for (std::size_t k = 0; k < terms; ++k) {
-    const double scale = (k == 0 ? 1.0 : 1.0 / (kVariation * kVariation)) *
-                         (1.0 + kSecondDifferences / (kRoughness * kRoughness));
+    const double scale = variation_precision(k) * (1.0 + kSecondDifferences / (kRoughness * kRoughness));
     for (std::size_t i = 0; i < n; ++i) sum[k * n + i] += scale * precision_[i];
   }
   return sum;
@@ -282,14 +348,18 @@ EffectivePsf PsfFit::solve(int order, std::span<const char> use) const {
     away[i] = (i < n ? prior_.coefficients[i] : 0.0) - result.coefficients[i];
   std::vector<double> residual(terms * n, 0.0);
   add_prior(away, terms, residual);
-  std::vector<double> plane(n);
-  for (std::size_t s = 0; s < stars_.size(); ++s) {
-    if (!use.empty() && use[s] == 0) continue;
-    const Star& star = stars_[s];
-    std::ranges::fill(plane, 0.0);
-    backward(star, std::span(residual_).subspan(star.offset, side_ * side_), plane);
-    for (std::size_t k = 0; k < terms; ++k)
-      for (std::size_t i = 0; i < n; ++i) residual[k * n + i] += star.phi[k] * plane[i];
+  {
+    const std::size_t size = place(0, rows_);
+    std::vector<double> phases(terms * size, 0.0);
+    std::vector<double> plane(size);
+    for (std::size_t s = 0; s < stars_.size(); ++s) {
+      if (!use.empty() && use[s] == 0) continue;
+      backward(stars_[s], of(stars_[s], residual_), plane);
+      add_terms(stars_[s], plane, terms, phases);
+    }
+    std::vector<double> slope(terms * n);
+    gather(phases, terms, slope);
+    for (std::size_t i = 0; i < slope.size(); ++i) residual[i] += slope[i];
   }
   const std::vector<double> scale = diagonal(terms, use);
   std::vector<double> solution(terms * n, 0.0);
@@ -301,8 +371,8 @@ EffectivePsf PsfFit::solve(int order, std::span<const char> use) const {
   precondition();
   std::vector<double> direction = conditioned;
   double rho = std::inner_product(residual.begin(), residual.end(), conditioned.begin(), 0.0);
-  const double enough = kTolerance * kTolerance * rho;
-  for (int iteration = 0; iteration < most_iterations_ && rho > enough && rho > 0.0; ++iteration) {
+  const double enough = settings_.tolerance * settings_.tolerance * rho;
+  for (int iteration = 0; iteration < settings_.most_iterations && rho > enough && rho > 0.0; ++iteration) {
     multiply(direction, terms, use, product);
     const double curvature = std::inner_product(direction.begin(), direction.end(), product.begin(), 0.0);
     if (!(curvature > 0.0)) break;
@@ -322,22 +392,23 @@ EffectivePsf PsfFit::solve(int order, std::span<const char> use) const {
 }
 
 std::vector<double> PsfFit::chi2(const EffectivePsf& psf) const {
-  const std::size_t n = present_.plane_size();
   std::vector<double> change = psf.coefficients;
   for (std::size_t i = 0; i < present_.coefficients.size(); ++i) change[i] -= present_.coefficients[i];
+  const std::vector<double> phases = spread(change, psf.terms());
+  std::vector<double> sum(phases.size() / psf.terms());
   std::vector<double> result;
-  std::vector<double> plane(n);
-  std::vector<double> pixels(side_ * side_);
+  std::vector<double> pixels;
   for (const Star& star : stars_) {
-    combine(star, change, psf.terms(), plane);
-    forward(star, plane, pixels);
+    pixels.resize(star.pixels());
+    combine(star, phases, psf.terms(), sum);
+    forward(star, sum, pixels);
     project(star, pixels);
-    double sum = 0.0;
+    double chi2 = 0.0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       const double d = residual_[star.offset + i] - pixels[i];
-      sum += d * d;
+      chi2 += d * d;
     }
-    result.push_back(sum);
+    result.push_back(chi2);
   }
   return result;
 }

@@ -15,7 +15,9 @@ namespace astroid::detail {
 struct PsfFitSettings {
   double model_error = 0.01;      ///< share of a star's light in a pixel that the present PSF may be wrong by
   double neighbour_error = 0.05;  ///< the same of its neighbours' light
-  int most_iterations = 150;      ///< of conjugate gradients
+  double tolerance = 1e-3;        ///< of conjugate gradients: the residual's norm
+  int most_iterations = 150;      ///< of them
+  std::size_t whole_stars = 150;  ///< the brightest, whose wings count; of the others only the core does
 };
 
 /// The pixels of the chosen stars of a field, what the present PSF leaves in them, and the equations for a better one.
@@ -41,35 +43,49 @@ class PsfFit {
   struct Star {
     std::array<double, 6> phi{};
     double flux = 0.0;
-    int start_x = 0;  // sample of the first spline of the first pixel
+    int side = 0;     // px, of its box
+    int start_x = 0;  // padded sample of the first spline of the first pixel
     int start_y = 0;
     std::array<double, 4> wx{};
     std::array<double, 4> wy{};
     std::size_t offset = 0;  // of its pixels
+    [[nodiscard]] std::size_t pixels() const { return static_cast<std::size_t>(side) * static_cast<std::size_t>(side); }
   };
-  void add_star(const FieldSolver& field, std::size_t index, const PsfFitSettings& settings);
-  /// sqrt(w) F A c, projected. @param plane  coefficients at the star's place
-  void forward(const Star& star, std::span<const double> plane, std::span<double> pixels) const;
-  /// Adds F A^T sqrt(w) v to a plane.
-  void backward(const Star& star, std::span<const double> pixels, std::span<double> plane) const;
+  void add_star(const FieldSolver& field, std::size_t index, int half, const PsfFitSettings& settings);
+  [[nodiscard]] std::span<const double> of(const Star& star, const std::vector<double>& values) const;
+  /// sqrt(w) F A c. @param phases  coefficients at the star's place, as spread_phases() lays them out
+  void forward(const Star& star, std::span<const double> phases, std::span<double> pixels) const;
+  /// Adds F A^T sqrt(w) v.
+  void backward(const Star& star, std::span<const double> pixels, std::span<double> phases) const;
   void project(const Star& star, std::span<double> pixels) const;
-  void combine(const Star& star, std::span<const double> coefficients, std::size_t terms,
-               std::vector<double>& plane) const;
+  /// The sum over the terms at a star's place.
+  void combine(const Star& star, std::span<const double> phases, std::size_t terms, std::span<double> sum) const;
+  /// Its transpose; leaves zeros where the sum was.
+  void add_terms(const Star& star, std::span<double> sum, std::size_t terms, std::span<double> phases) const;
+  template <class Visit>
+  void for_each_run(const Star& star, Visit visit) const;
+  [[nodiscard]] std::vector<double> spread(std::span<const double> coefficients, std::size_t terms) const;
+  void gather(std::span<const double> phases, std::size_t terms, std::span<double> coefficients) const;
+  [[nodiscard]] std::size_t place(int x, int y) const;
   void multiply(std::span<const double> v, std::size_t terms, std::span<const char> use, std::span<double> product) const;
   [[nodiscard]] std::vector<double> diagonal(std::size_t terms, std::span<const char> use) const;
   void add_prior(std::span<const double> v, std::size_t terms, std::span<double> product) const;
 
   EffectivePsf present_;
   EffectivePsf prior_;
-  int half_;            // px, of a star's box
-  std::size_t side_;    // px
-  int most_iterations_;
+  PsfFitSettings settings_;
+  // Samples that are a whole number of pixels apart are side by side in memory: a row of the grid is samples_per_pixel
+  // runs of `run_` samples, with zeros for `pad_` samples around the grid.
+  int pad_;
+  int rows_;
+  std::size_t run_;
   std::size_t usable_pixels_ = 0;
   std::vector<Star> stars_;
   std::vector<double> root_weight_;
-  std::vector<double> residual_;  // times the root of the weight, projected
-  std::vector<double> basis_;     // kFree planes a star, orthonormal
-  std::vector<double> precision_; // of the prior's coefficients
+  std::vector<double> residual_;   // times the root of the weight, projected
+  std::vector<double> basis_;      // kFree planes a star, orthonormal
+  std::vector<double> precision_;  // of the prior's coefficients
+  mutable std::vector<double> scratch_;
 };
 
 }  // namespace astroid::detail

@@ -44,15 +44,16 @@ void require_stars(std::size_t count) {
 }
 
 // Every fourth star is left out and foretold from the others. @returns the order that foretells best.
-int choose_order(const detail::PsfFit& fit, std::size_t stars, int most) {
+int choose_order(const detail::PsfFit& fit, std::size_t stars, int least, int most) {
+  if (least >= most) return least;
   constexpr std::size_t kFold = 4;
   constexpr std::size_t kStarsPerTerm = 10;
   constexpr double kSignificant = 2.0;
   std::vector<char> use(stars, 1);
   for (std::size_t i = 0; i < stars; i += kFold) use[i] = 0;
-  int best = 0;
-  std::vector<double> before = fit.chi2(fit.solve(0, use));
-  for (int order = 1; order <= most; ++order) {
+  int best = least;
+  std::vector<double> before = fit.chi2(fit.solve(best, use));
+  for (int order = best + 1; order <= most; ++order) {
     const auto terms = static_cast<std::size_t>((order + 1) * (order + 2) / 2);
     if (stars < kStarsPerTerm * terms) break;
     const std::vector<double> after = fit.chi2(fit.solve(order, use));
@@ -83,7 +84,7 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
   if (!(sigma > 0.0)) require_stars(0);
 
   const double wide = std::sqrt(sigma * sigma + kPixelVariance);
-  constexpr double kSamplesPerSigma = 2.2;  // a spline then misses 3e-4 of a Gaussian's peak
+  constexpr double kSamplesPerSigma = 2.0;  // a spline then misses 5e-4 of a Gaussian's peak
   constexpr int kMostSamples = 4;
   const int samples = std::clamp(static_cast<int>(std::ceil(kSamplesPerSigma / wide)), 2, kMostSamples);
   constexpr double kGridFwhm = 4.0;
@@ -111,7 +112,7 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
     const detail::PsfFitSettings fit_settings{.model_error = first ? 0.05 : last ? 0.003 : 0.01};
     const EffectivePsf prior = detail::effective_gaussian(sigma, samples, reach * samples);
     const detail::PsfFit fit(field.solver(), stars, present, prior, fit_settings);
-    if (round == std::min(1, settings.rounds - 1)) order = choose_order(fit, stars.size(), settings.most_order);
+    if (last || !first) order = choose_order(fit, stars.size(), order, settings.most_order);
     present = fit.solve(order);
     detail::fix_gauge(present, wide);
     sigma = detail::nearest_sigma(present);
