@@ -13,7 +13,7 @@ namespace {
 // the distance from the star as wings of diffraction do.
 constexpr double kPriorShare = 0.5;
 constexpr double kPriorFloor = 0.02;
-constexpr double kWingSlope = 3.0;
+constexpr double kWingSlope = 1.0;
 // The same of second differences along the grid, relative to the above.
 constexpr double kRoughness = 0.3;
 // Variation over the field, relative to the above: of the terms of first and of second order.
