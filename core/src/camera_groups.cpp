@@ -67,7 +67,8 @@ Mission group_mission(const Mission& mission, int group) {
 }
 
 Boresight spacecraft_boresight(const Mission& mission) {
-  return {.axis = {mission.satellite.ra.value(), mission.satellite.dec.value()}, .roll = mission.satellite.roll};
+  return {.axis = {mission.satellite.ra.value(), mission.satellite.dec.value()},
+          .roll = mission.satellite.roll + mission.simulation.quarter * mission.satellite.repointing.turn};
 }
 
 Boresight camera_boresight(const Mission& mission) {

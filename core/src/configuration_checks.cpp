@@ -10,6 +10,8 @@
 
 #include "astroid/core/camera_groups.hpp"
 #include "astroid/core/response.hpp"
+#include "astroid/core/run_time.hpp"
+#include "astroid/core/units.hpp"
 #include "configuration_draft.hpp"
 
 namespace astroid::configuration {
@@ -96,6 +98,33 @@ void check_cmos(const Mission& m, Checker& checker) {
                   fmt::format("at least {:g} ADU, 6 sigma of readout noise, reset noise and offsets", lowest));
   checker.require(cmos.telegraph_fraction == 0.0 || cmos.telegraph_current.value() > 0.0, "CMOS/Telegraph/Current",
                   "CMOS/Telegraph/Fraction", "is 0, though pixels jump", "more than 0 e-/px/s");
+  checker.require(cmos.persistence.time.size() == cmos.persistence.fraction.size(), "CMOS/Persistence/Time",
+                  "CMOS/Persistence/Fraction", fmt::format("is a list of {}", cmos.persistence.time.size()),
+                  fmt::format("{}, one for each fraction", cmos.persistence.fraction.size()));
+  double held = 0.0;
+  for (const double share : cmos.persistence.fraction) held += share;
+  constexpr double kMostHeld = 0.2;
+  checker.require(held <= kMostHeld, "CMOS/Persistence/Fraction", "", "holds more than 20 % of the charge in all",
+                  "at most 20 % together");
+  const double readout = cmos.line_time.value() * m.ccd.rows;
+  checker.require(m.ccd.rows <= 0 || readout <= m.simulation.cycle.value(), "CMOS/LineTime", "Simulation/Cycle",
+                  fmt::format("{} rows take {:g} s, longer than the cycle", m.ccd.rows, readout),
+                  fmt::format("at most {:g} s", m.simulation.cycle.value() / std::max(1, m.ccd.rows)));
+}
+
+/// A turn between quarters puts every star elsewhere, which one run cannot show.
+void check_quarters(const Mission& m, Checker& checker) {
+  const double length = m.satellite.quarter_days * kSecondsPerDay;
+  const bool turns = m.satellite.repointing.turn.value() != 0.0;
+  checker.require(m.simulation.quarter == 0 || length > 0.0, "Simulation/Quarter", "Satellite/Quarter",
+                  "is not the first, though the spacecraft is never pointed anew", "0, or Satellite/Quarter above 0 d");
+  const double end = end_of_run(m.simulation).value();
+  checker.require(
+      !turns || length <= 0.0 || end <= length, "Simulation/Exposures", "Satellite/Repointing/Turn",
+      fmt::format("the run lasts {:.6g} d, beyond the end of its quarter after {:.6g} d, when the spacecraft "
+                  "turns and every star lands on another pixel",
+                  end / kSecondsPerDay, m.satellite.quarter_days),
+      "a run within one quarter, and one run for each (Simulation/Quarter)");
 }
 
 void check_traps(const Mission& m, Checker& checker) {
@@ -128,10 +157,14 @@ void check_readout(const Mission& m, Checker& checker) {
   checker.require(fits(ccd.nodes.noise_factor), "CCD/Nodes/NoiseFactors", "CCD/Nodes/Count",
                   fmt::format("{} numbers for {} nodes", ccd.nodes.noise_factor.size(), ccd.nodes.count),
                   one_for_each("factors", ccd.nodes.count));
-  // The rows of the upper half leave the other way: what they pass is not the whole column.
-  checker.require(ccd.smearing.model == SmearingModel::kNone || ccd.nodes.count < 4, "CCD/Smearing/model",
-                  "CCD/Nodes/Count", "four nodes read the halves of a column in opposite directions",
-                  "none, or one or two nodes");
+  // Charge transfer moves all rows downwards; the halves of a column would have to move apart.
+  const CtiSettings& cti = ccd.cti;
+  const bool parallel = (cti.model == CtiModel::kSimple && cti.parallel > 0.0) ||
+                        (cti.model == CtiModel::kTraps && std::any_of(cti.trap_density.begin(), cti.trap_density.end(),
+                                                                      [](double d) { return d > 0.0; }));
+  checker.require(!parallel || ccd.nodes.count < 4, "CCD/CTI/model", "CCD/Nodes/Count",
+                  "loses charge between rows, which four nodes move in opposite directions",
+                  "none, losses between columns alone, or one or two nodes");
   const auto check_response = [&](const std::vector<double>& coefficients, std::string_view path) {
     checker.require(coefficients.empty() || coefficients.size() == 3, path, "",
                     fmt::format("{} coefficients", coefficients.size()), "three numbers, a0 a1 a2, or none");
@@ -226,6 +259,7 @@ void check_together(const Mission& mission, Draft& draft) {
   check_times(mission, checker);
   check_detector(mission, checker);
   check_cmos(mission, checker);
+  check_quarters(mission, checker);
   check_traps(mission, checker);
   check_readout(mission, checker);
   check_calibration(mission, checker);

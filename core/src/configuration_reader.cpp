@@ -65,7 +65,8 @@ ResolvedConfiguration read_configuration_text(std::string_view xml, const std::s
     configuration::read_overrides(surroundings, draft);
     configuration::fill_defaults(draft);
   }
-  const Mission mission = assemble(draft);
+  Mission mission = assemble(draft);
+  mission.simulation.start_mjd += mission.simulation.quarter * mission.satellite.quarter_days;
   if (!draft.elements.empty()) configuration::check_together(mission, draft);
   if (!draft.problems.empty()) {
     sort_problems(draft.problems);

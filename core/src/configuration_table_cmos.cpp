@@ -59,6 +59,39 @@ std::vector<Parameter> read_parameters() {
   };
 }
 
+std::vector<Parameter> memory_parameters() {
+  return {
+      {.path = "CMOS/Persistence/Fraction",
+       .kind = Kind::kRealList,
+       .unit = "%",
+       .range = from_to(0, 20),
+       .meaning =
+           "Share of the charge of an exposure that each kind of trap holds at its end and releases later; unset "
+           "or 0: none.",
+       .example = "0.3 0.1",
+       .assign =
+           [](Mission& m, const Value& v) {
+             m.cmos.persistence.fraction = v.reals;
+             for (double& share : m.cmos.persistence.fraction) share /= kPercentInOne;
+           }},
+      {.path = "CMOS/Persistence/Time",
+       .kind = Kind::kRealList,
+       .unit = "s",
+       .range = above_up_to(0, 1e6),
+       .meaning = "Mean time after which each kind of trap releases its charge.",
+       .example = "60 900",
+       .assign = [](Mission& m, const Value& v) { m.cmos.persistence.time = v.reals; }},
+      {.path = "CMOS/LineTime",
+       .unit = "s",
+       .range = from_to(0, 1e4),
+       .fallback = "0",
+       .meaning = "Time by which each row begins and ends its exposure later than the row below it (rolling shutter); "
+                  "0: all rows at once.",
+       .example = "0.002",
+       .assign = [](Mission& m, const Value& v) { m.cmos.line_time = Seconds(v.real); }},
+  };
+}
+
 std::vector<Parameter> pixel_parameters() {
   return {
       {.path = "CMOS/GainSpread",
@@ -132,6 +165,7 @@ std::vector<Parameter> pixel_parameters() {
 std::vector<Parameter> cmos_parameters() {
   std::vector<Parameter> parameters = read_parameters();
   for (Parameter& parameter : pixel_parameters()) parameters.push_back(std::move(parameter));
+  for (Parameter& parameter : memory_parameters()) parameters.push_back(std::move(parameter));
   return parameters;
 }
 

@@ -37,7 +37,9 @@ std::vector<Parameter> reference_parameters() {
        .unit = "px",
        .range = from_to(0, kMostReferencePixels),
        .fallback = "0",
-       .meaning = "Rows that are read after the last one and show what is smeared into each column.",
+       .meaning =
+           "Rows that are read after the last one and show what is smeared into each column; with four nodes, as many "
+           "behind each half: they lie below the first row for the lower half.",
        .example = "30",
        .assign = [](Mission& m, const Value& v) { m.ccd.reference.parallel_overscan = static_cast<int>(v.integer); }},
   };
@@ -66,8 +68,8 @@ std::vector<Parameter> smearing_parameters() {
        .range = kDuration,
        .fallback = "4.019",
        .meaning =
-           "Time in which all rows of the detector are moved past the light: of reading the frame, or of moving it "
-           "into the store.",
+           "Time in which all rows of the detector, with four nodes those of either half, are moved past the light: of "
+           "reading the frame, or of moving it into the store.",
        .example = "4.019",
        .assign = [](Mission& m, const Value& v) { m.ccd.smearing.time = Seconds(v.real); }},
       {.path = "CCD/Smearing/ClearTime",
@@ -208,6 +210,13 @@ std::vector<Parameter> bad_pixel_parameters() {
        .meaning = "Dark current of a hot pixel, beyond that of the others.",
        .example = "1000",
        .assign = [](Mission& m, const Value& v) { m.ccd.bad_pixels.hot_current = ElectronsPerSecond(v.real); }},
+      {.path = "CCD/BadPixels/File",
+       .kind = Kind::kFile,
+       .meaning = "Bad pixels beside those drawn: a table with columns x, y (0-based) and perhaps kind (dead, hot, "
+                  "column) and "
+                  "rate_e_per_s of hot ones, or a FITS image of the whole detector with 0 good, 1 dead, 2 hot.",
+       .example = "bad_pixels.csv",
+       .assign = [](Mission& m, const Value& v) { m.ccd.bad_pixels.file = v.text; }},
   };
 }
 

@@ -2,6 +2,10 @@
 
 namespace astroid::configuration {
 
+namespace {
+constexpr double kMostQuarters = 1000;
+}  // namespace
+
 std::vector<Parameter> simulation_parameters() {
   return {
       {.path = "Simulation/Type",
@@ -57,6 +61,14 @@ std::vector<Parameter> simulation_parameters() {
              m.simulation.start = v.text;
              m.simulation.start_mjd = v.real;
            }},
+      {.path = "Simulation/Quarter",
+       .kind = Kind::kInteger,
+       .range = from_to(0, kMostQuarters),
+       .fallback = "0",
+       .meaning = "Quarter of the mission that is simulated, from 0: the run begins so many times Satellite/Quarter "
+                  "after Start, turned by as many Satellite/Repointing/Turn.",
+       .example = "1",
+       .assign = [](Mission& m, const Value& v) { m.simulation.quarter = static_cast<int>(v.integer); }},
   };
 }
 

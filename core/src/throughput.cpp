@@ -16,7 +16,7 @@ constexpr double kSecondsPerYear = 365.25 * 86400.0;
 
 double throughput_at(const Mission& mission, Seconds time) {
   const ThroughputSettings& t = mission.telescope.throughput;
-  const double age = t.age_years + time.value() / kSecondsPerYear;
+  const double age = t.age_years + (quarter_start(mission) + time).value() / kSecondsPerYear;
   return std::max(0.0, t.beginning_of_life * (1.0 - (1.0 - t.end_of_life) * age / t.lifetime_years));
 }
 

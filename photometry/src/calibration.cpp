@@ -40,7 +40,8 @@ FrameCalibration::FrameCalibration(const PixelLayout& layout, const CalibrationM
   std::array<std::size_t, kMostNodes> prescan_pixels{};
   for (std::size_t r = 0; r < regions.size(); ++r) {
     const Rectangle& area = regions[r];
-    if (area.y0 >= model.detector.y1() && area.x0 >= model.detector.x0 && area.x1() <= model.detector.x1()) {
+    const bool behind = area.y0 >= model.detector.y1() || (nodes.splits_columns() && area.y1() <= model.detector.y0);
+    if (behind && area.x0 >= model.detector.x0 && area.x1() <= model.detector.x1()) {
       overscan.push_back(r);
       overscan_rows_ = area.ny;
     }
@@ -71,16 +72,22 @@ FrameCalibration::FrameCalibration(const PixelLayout& layout, const CalibrationM
   if (!model.subtract_smearing) return;
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (!is_light_sensitive(regions[r])) continue;
-    const auto covers = [&](std::size_t o) {
-      return regions[o].x0 <= regions[r].x0 && regions[o].x1() >= regions[r].x1();
-    };
-    const auto found = std::ranges::find_if(overscan, covers);
-    if (found == overscan.end())
-      throw no_reference("Photometry/Calibration/Smearing", "overscan", "overscan rows",
-                         "the detector has no pixels that show what is smeared into its columns");
-    columns_.push_back({.region = r,
-                        .level = level_begins_[static_cast<std::size_t>(found - overscan.begin())] +
-                                 static_cast<std::size_t>(regions[r].x0 - regions[*found].x0)});
+    for (int half = 0; half < nodes.halves(); ++half) {
+      const Rectangle part = intersect(regions[r], nodes.half(model.detector, half));
+      if (part.empty()) continue;
+      const auto covers = [&](std::size_t o) {
+        return regions[o].x0 <= part.x0 && regions[o].x1() >= part.x1() && nodes.half_of(regions[o].y0) == half;
+      };
+      const auto found = std::ranges::find_if(overscan, covers);
+      if (found == overscan.end())
+        throw no_reference("Photometry/Calibration/Smearing", "overscan", "overscan rows",
+                           "the detector has no pixels that show what is smeared into its columns");
+      columns_.push_back({.region = r,
+                          .y0 = part.y0,
+                          .y1 = part.y1(),
+                          .level = level_begins_[static_cast<std::size_t>(found - overscan.begin())] +
+                                   static_cast<std::size_t>(part.x0 - regions[*found].x0)});
+    }
   }
   overscan_ = std::move(overscan);
 }
@@ -145,7 +152,7 @@ void FrameCalibration::subtract_smearing(Frame& frame, Scratch& scratch) const {
     const auto view = frame.pixels.view(columns.region);
     const Rectangle& area = view.area();
     const double* levels = scratch.levels.data() + columns.level;
-    for (int y = area.y0; y < area.y1(); ++y) {
+    for (int y = columns.y0; y < columns.y1; ++y) {
       float* row = view.row(y).data();
       for (int i = 0; i < area.nx; ++i) row[i] = static_cast<float>(static_cast<double>(row[i]) - levels[i]);
     }

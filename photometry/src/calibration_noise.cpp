@@ -40,7 +40,7 @@ void StarEstimatorBuilder::smear_window(const Rectangle& window) {
   std::size_t i = 0;
   for (int y = window.y0; y < window.y1(); ++y)
     for (int x = window.x0; x < window.x1(); ++x, ++i) {
-      total_[i] += model_.smearing.at(x);
+      total_[i] += model_.smearing.at(x, y);
       if (unequal) total_[i] += model_.more_readout_variance[static_cast<std::size_t>(model_.nodes.of(x, y))];
     }
 }
@@ -63,23 +63,24 @@ void StarEstimatorBuilder::add_calibration_noise(StarEstimator& estimator) {
     top = std::max(top, k / width);
   }
   if (left > right) return;  // no terms
-  column_weights_.assign(right - left + 1, 0.0);
+  // Of the columns below `upper_row`, then of those above: their levels are measured apart.
+  const std::size_t columns = right - left + 1;
+  column_weights_.assign(2 * columns, 0.0);
   row_weights_.assign(top - bottom + 1, 0.0);
   for (const EstimatorTerm& term : estimator.terms) {
     const std::size_t k = term.pixel - layout_.offset(estimator.region);
     const auto weight = static_cast<double>(term.weight);
     const int x = region.x0 + static_cast<int>(k % width);
-    const double smeared = smearing.at(x);
+    const int y = region.y0 + static_cast<int>(k / width);
+    const double smeared = smearing.at(x, y);
     budget.var_smearing += weight * weight * smeared;
     budget.smearing += weight * smeared;
     budget.bias_weight += weight;
-    column_weights_[k % width - left] += weight;
+    column_weights_[k % width - left + (smearing.is_upper(y) ? columns : 0)] += weight;
     row_weights_[k / width - bottom] += weight;
-    if (unequal) {
-      const int y = region.y0 + static_cast<int>(k / width);
+    if (unequal)
       budget.var_readout +=
           weight * weight * model_.more_readout_variance[static_cast<std::size_t>(model_.nodes.of(x, y))];
-    }
   }
   const double common = budget.bias_weight * budget.bias_weight;  // of what all pixels share
   for (const double weight : row_weights_) budget.var_bias += weight * weight * model_.row_offset_variance;
@@ -99,9 +100,10 @@ void StarEstimatorBuilder::add_calibration_noise(StarEstimator& estimator) {
   for (std::size_t column = 0; column < column_weights_.size(); ++column) {
     const double weight = column_weights_[column];
     if (weight == 0.0) continue;
-    const int x = region.x0 + static_cast<int>(left + column);
-    double variance = smearing.at(x) + electronics;
-    if (unequal) variance += model_.more_readout_variance[static_cast<std::size_t>(model_.nodes.of(x, region.y0))];
+    const int x = region.x0 + static_cast<int>(left + column % columns);
+    const int y = column < columns ? region.y0 : std::max(region.y0, smearing.upper_row);  // of that half
+    double variance = smearing.at(x, y) + electronics;
+    if (unequal) variance += model_.more_readout_variance[static_cast<std::size_t>(model_.nodes.of(x, y))];
     budget.var_smearing_correction += weight * weight * variance / smearing.overscan_rows;
   }
 }

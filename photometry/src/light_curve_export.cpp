@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "astroid/core/fits.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "light_curve_cards.hpp"
 
@@ -26,13 +27,14 @@ void export_light_curve(const std::string& path, const LightCurve& curve, const 
   writer.card({"MAG", curve.star.magnitude, "[mag] of the catalogue"});
   writer.card({"EXPTIME", header.exposure_time, "[s] exposure time"});
   writer.card({"CYCLE", header.cycle, "[s] from exposure to exposure"});
+  const double later = header.line_time * curve.star.y / kSecondsPerDay;  // of its row
   std::vector<double> time;
   std::vector<double> error;
   std::vector<std::int32_t> quality;
   std::vector<std::int64_t> cadence;
   for (std::int64_t k = 0; k < count; ++k) {
     const auto i = static_cast<std::size_t>(k);
-    time.push_back(mid_exposure_bjd(header, k));
+    time.push_back(mid_exposure_bjd(header, k) + later);
     error.push_back(std::isfinite(curve.flux[i]) ? curve.star.nsr_exposure * curve.star.reference : curve.flux[i]);
     quality.push_back(static_cast<std::int32_t>(curve.flags[i]));
     cadence.push_back(k);

@@ -57,6 +57,7 @@ LightCurveHeader read_header(const FitsReader& reader) {
   header.cycle = number_of(reader, "CYCLE");
   header.exposure_time = number_of(reader, "EXPTIME");
   header.start_mjd = number_of(reader, "MJD-BEG");
+  header.line_time = reader.number(kPrimary, "LINETIME").value_or(0.0);
   header.history = reader.history(kPrimary);
   const int groups = group_count(reader);
   for (int camera = 1; groups > 0 && camera <= header.cameras; ++camera) {

@@ -74,6 +74,8 @@ struct LightCurveWriter::Impl {
     writer.card({"CYCLE", header.cycle, "[s] from exposure to exposure"});
     writer.card({"EXPTIME", header.exposure_time, "[s] exposure time"});
     writer.card({"MJD-BEG", header.start_mjd, "[d] TDB, start of the first exposure"});
+    if (header.line_time > 0.0)
+      writer.card({"LINETIME", header.line_time, "[s] a star's TIME is later by LINETIME * Y"});
     if (!groups.empty()) writer.card({"GROUPS", static_cast<int>(groups.size()), "number of groups of cameras"});
     for (const std::string& line : header.history) writer.history(line);
   }

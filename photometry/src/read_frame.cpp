@@ -134,6 +134,7 @@ class FrameReader {
     } else if (gain && gain->value > 0.0) {
       header.gain = Gain(gain->value);
     } else {
+      file_.gain_assumed = true;
       file_.notes.emplace_back("The header gives no gain: 1 e-/ADU assumed, so errors are only as good as that.");
     }
   }

@@ -68,27 +68,39 @@ void subtract_overscan(const FitsReader& reader, int image_unit, const std::opti
   const Rectangle image = frame.pixels.layout().regions()[0];
   const std::vector<ReferenceImage> found = read_all(reader, image_unit, "OVERSCAN");
   if (found.empty()) return;
-  const auto fits = [&](const ReferenceImage& o) {
-    return o.area.y0 >= image.y1() && o.area.x0 <= image.x0 && o.area.x1() >= image.x1();
+  const auto find = [&](bool above) {
+    const auto fits = [&](const ReferenceImage& o) {
+      const bool beside = above ? o.area.y0 >= image.y1() : o.area.y1() <= image.y0;
+      return beside && o.area.x0 <= image.x0 && o.area.x1() >= image.x1();
+    };
+    const auto place = std::ranges::find_if(found, fits);
+    return place != found.end() ? &*place : nullptr;
   };
-  const auto overscan = std::ranges::find_if(found, fits);
-  if (overscan == found.end()) {
+  const ReferenceImage* const above = find(true);
+  const ReferenceImage* const below = find(false);
+  if (above == nullptr) {
     notes.emplace_back("The OVERSCAN extension does not lie above the image (LTV1, LTV2) and was not used.");
     return;
   }
   const double level = bias_of(reader, image_unit, bias, frame.header);
-  std::vector<double> levels(static_cast<std::size_t>(overscan->area.nx));
-  column_levels(overscan->pixels.view(), noise_of(frame.header, level), levels);
-  const auto first = static_cast<std::size_t>(image.x0 - overscan->area.x0);
   const auto view = frame.pixels.view(0);
-  for (int y = image.y0; y < image.y1(); ++y) {
-    const std::span<float> row = view.row(y);
-    for (std::size_t i = 0; i < row.size(); ++i)
-      row[i] = static_cast<float>(static_cast<double>(row[i]) - (levels[first + i] - level));
-  }
+  const auto subtract = [&](const ReferenceImage& overscan, int y0, int y1) {
+    std::vector<double> levels(static_cast<std::size_t>(overscan.area.nx));
+    column_levels(overscan.pixels.view(), noise_of(frame.header, level), levels);
+    const auto first = static_cast<std::size_t>(image.x0 - overscan.area.x0);
+    for (int y = std::max(y0, image.y0); y < std::min(y1, image.y1()); ++y) {
+      const std::span<float> row = view.row(y);
+      for (std::size_t i = 0; i < row.size(); ++i)
+        row[i] = static_cast<float>(static_cast<double>(row[i]) - (levels[first + i] - level));
+    }
+  };
+  // Overscan on both sides: the halves of a column are read in opposite directions, and meet in the middle between.
+  const int middle = below != nullptr ? below->area.y1() + (above->area.y0 - below->area.y1() + 1) / 2 : image.y0;
+  if (below != nullptr) subtract(*below, image.y0, middle);
+  subtract(*above, middle, image.y1());
   notes.push_back(
-      fmt::format("The mean of {} overscan rows, above a bias of {:.6g} ADU, was subtracted from each column.",
-                  overscan->area.ny, level));
+      fmt::format("The mean of {} overscan rows, above a bias of {:.6g} ADU, was subtracted from each column{}.",
+                  above->area.ny, level, below != nullptr ? ", of each half of it" : ""));
 }
 
 }  // namespace astroid::detail

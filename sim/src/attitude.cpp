@@ -1,5 +1,9 @@
 #include "astroid/sim/attitude.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
 namespace astroid {
 
 std::vector<Attitude> AttitudeModel::sample(std::int64_t count, int steps) const {
@@ -30,6 +34,31 @@ AttitudeMoments attitude_moments(std::span<const Attitude> attitude) {
     moments.covariance.roll_roll += d.roll * d.roll / n;
   }
   return moments;
+}
+
+void for_each_exposure_at(const AttitudeModel& gapless, const SimulationSettings& simulation,
+                          std::span<const Seconds> offsets, std::int64_t count, int steps,
+                          const std::function<void(std::span<const Attitude>)>& visit) {
+  const double cycle = simulation.cycle.value();
+  const double exposure = simulation.exposure_time.value();
+  const int parts = std::max(1, static_cast<int>(std::ceil(steps * cycle / exposure)));
+  // Of each attitude of an exposure, its part of this cycle and the next.
+  std::vector<std::size_t> at;
+  for (const Seconds& offset : offsets)
+    for (int i = 0; i < steps; ++i) {
+      const double time = offset.value() + (i + 0.5) * exposure / steps;
+      const double part = std::clamp(std::floor(time / cycle * parts), 0.0, 2.0 * parts - 1.0);
+      at.push_back(static_cast<std::size_t>(part));
+    }
+  std::vector<Attitude> two_cycles;
+  std::vector<Attitude> windows(at.size());
+  gapless.for_each_exposure(count + 1, parts, [&](std::span<const Attitude> next) {
+    two_cycles.insert(two_cycles.end(), next.begin(), next.end());
+    if (two_cycles.size() == next.size()) return;
+    for (std::size_t i = 0; i < at.size(); ++i) windows[i] = two_cycles[at[i]];
+    visit(windows);
+    two_cycles.erase(two_cycles.begin(), two_cycles.begin() + parts);
+  });
 }
 
 namespace {

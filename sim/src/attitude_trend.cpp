@@ -10,12 +10,12 @@
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/run_time.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
 namespace {
 
-constexpr double kSecondsPerDay = 86400.0;
 constexpr std::size_t kAxes = 3;
 // Of a thermo-elastic polynomial of unit amplitude over a quarter: 1.5e-6 x 90 d / 12 and 1e-13 x (90 d)² / 12.
 // @source Jannsen2024
@@ -130,6 +130,7 @@ AttitudeTrend thermo_elastic_drift(const SatelliteSettings& satellite, const Sim
   const auto rate = axes(drift.yaw_rate, drift.pitch_rate, drift.roll_rate);
   if (is_zero(amplitude) && is_zero(rate)) return {};
   const auto [length, count] = quarters_of(satellite, simulation);
+  const auto first = static_cast<std::size_t>(simulation.quarter);
   // Without quarters, thermo-elastic motion still has the pace of one.
   constexpr double kUsualQuarter = 90.0 * kSecondsPerDay;
   const double pace = satellite.quarter_days > 0.0 ? length : kUsualQuarter;
@@ -137,7 +138,7 @@ AttitudeTrend thermo_elastic_drift(const SatelliteSettings& satellite, const Sim
   for (std::size_t q = 0; q < count; ++q)
     for (std::size_t axis = 0; axis < kAxes; ++axis) {
       const auto uniform = [&](std::uint32_t draw) {
-        return uniform_at_step(stream, {.step = q, .axis = static_cast<std::uint32_t>(axis), .draw = draw});
+        return uniform_at_step(stream, {.step = first + q, .axis = static_cast<std::uint32_t>(axis), .draw = draw});
       };
       const double signed_amplitude = uniform(0) < 0.5 ? -amplitude[axis] : amplitude[axis];
       quarters[q][axis].linear = rate[axis] / kSecondsPerDay + signed_amplitude * kLargestLinear * uniform(1) / pace;
@@ -150,12 +151,13 @@ AttitudeTrend repointing_error(const SatelliteSettings& satellite, const Simulat
                                const RandomStream& stream) {
   const auto rms = axes(satellite.repointing.yaw, satellite.repointing.pitch, satellite.repointing.roll);
   const auto [length, count] = quarters_of(satellite, simulation);
-  if (is_zero(rms) || count < 2) return {};
+  const auto first = static_cast<std::size_t>(simulation.quarter);
+  if (is_zero(rms) || first + count < 2) return {};
   std::vector<AttitudeTrend::Quarter> quarters(count);
-  for (std::size_t q = 1; q < count; ++q)
+  for (std::size_t q = first > 0 ? 0 : 1; q < count; ++q)
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       quarters[q][axis].constant =
-          rms[axis] * normal_at_step(stream, {.step = q, .axis = static_cast<std::uint32_t>(axis)});
+          rms[axis] * normal_at_step(stream, {.step = first + q, .axis = static_cast<std::uint32_t>(axis)});
   return {std::move(quarters), length, end_of_run(simulation).value()};
 }
 

@@ -15,6 +15,7 @@
 #include "effects/intra_pixel_response.hpp"
 #include "effects/jitter_file.hpp"
 #include "effects/jitter_model.hpp"
+#include "effects/persistence.hpp"
 #include "effects/photon_noise.hpp"
 #include "effects/pixel_gain.hpp"
 #include "effects/pixel_offset.hpp"
@@ -26,6 +27,7 @@
 #include "effects/ramp_reads.hpp"
 #include "effects/repointing.hpp"
 #include "effects/reset_noise.hpp"
+#include "effects/rolling_shutter.hpp"
 #include "effects/sky.hpp"
 #include "effects/stars.hpp"
 #include "effects/stray_light.hpp"
@@ -41,16 +43,17 @@ namespace astroid {
 namespace {
 
 // From PhotonNoise to RampReads: once for every read.
-using CmosTable =
-    EffectTable<ProperMotionEffect,                                                                    // Catalogue
-                JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                Throughput, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,                    // Optics
-                Sky, ZodiacalSky, StrayLight,                                                          // Sky
-                IntraPixelResponse,                                                                    // SubPixel
-                Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,      // PixelMean
-                PhotonNoise, CosmicRays, PixelSaturation,                                              // PixelSample
-                GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise, BiasEffect,
-                PixelOffset, Adc, RampReads, RampFitEffect, BadPixelMap>;  // Readout
+using CmosTable = EffectTable<ProperMotionEffect,  // Catalogue
+                              JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, RollingShutter,
+                              AberrationEffect,                                                          // Pointing
+                              ThroughputEffect, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,  // Optics
+                              Sky, ZodiacalSky, StrayLight,                                              // Sky
+                              IntraPixelResponse,                                                        // SubPixel
+                              Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,
+                              Persistence,                               // PixelMean
+                              PhotonNoise, CosmicRays, PixelSaturation,  // PixelSample
+                              GainEffect, InterPixelCapacitance, PixelGain, ResetNoise, PixelReadoutNoise, ColumnNoise,
+                              BiasEffect, PixelOffset, Adc, RampReads, RampFitEffect, BadPixelMap>;  // Readout
 
 }  // namespace
 

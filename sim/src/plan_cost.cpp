@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "astroid/core/psf.hpp"
+#include "plan_memory.hpp"
 #include "star_lists.hpp"
 
 namespace astroid {
@@ -67,6 +68,9 @@ constexpr StarCost kPrf{.star = 100.0, .row = 0.0, .pixel = 5.0, .broadening = 5
 constexpr double kMapNode = 11.0;    ///< ns a node of the map
 constexpr double kDeposit = 3500.0;  ///< ns a star, once for each tile that it reaches
 constexpr double kMapCell = 15.0;    ///< ns a cell of the light
+/// Of persistence (bench: BM_Persistence): what each pixel gives, and what it takes from each image that is kept.
+constexpr double kTaking = 0.4;
+constexpr double kPastImage = 0.6;
 constexpr double kNanosecond = 1e-9;
 
 /// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are
@@ -114,7 +118,7 @@ double renderings(const Plan& plan) {
 double stars_cost(const Plan& plan, const Scene& scene) {
   const StarCost& cost = star_cost(plan);
   std::vector<Rectangle> areas;
-  for (const Strip& strip : make_strips(*plan.layout, kStripPixels))
+  for (const Strip& strip : make_strips(*plan.layout, kStripPixels, plan.knobs.band_rows))
     areas.insert(areas.end(), strip.areas.begin(), strip.areas.end());
   double nanoseconds = 0.0;
   auto next = areas.begin();
@@ -142,9 +146,10 @@ double map_seconds(const Plan& plan, const Scene& scene, std::span<const Rectang
   }
   const double share = pixels / std::max(1.0, static_cast<double>(scene.detector().size()));
   const double deposits = share * static_cast<double>(scene.summary().stars) * renderings(plan);
-  const double nodes = static_cast<double>(map.map_size());
+  const auto maps = static_cast<double>(map.maps());
+  const double nodes = maps * static_cast<double>(map.map_size());
   const double cells = static_cast<double>(map.cells()) * map.cells();
-  return kNanosecond * (tiles * nodes * kMapNode + deposits * kDeposit + pixels * cells * kMapCell);
+  return kNanosecond * (tiles * nodes * kMapNode + maps * deposits * kDeposit + pixels * cells * kMapCell);
 }
 
 /// Whether the noiseless image is recalled rather than rendered.
@@ -175,6 +180,8 @@ double nominal_seconds(const PlannedEffect& effect, const Plan& plan, const Scen
        {std::span<const PixelCost>(kPixelCosts), std::span<const PixelCost>(kReadCosts)})
     for (const PixelCost& cost : costs)
       if (cost.effect == spec.name) return kNanosecond * cost.nanoseconds * pixels * reads;
+  if (spec.name == "persistence")
+    return kNanosecond * pixels * (kTaking + kPastImage * static_cast<double>(kept_images(plan, scene)));
   if (spec.name == "cosmic-rays") return kNanosecond * particle_cost(scene.mission()) * pixels;
   return kNanosecond * moving_cost(spec.name, scene.mission().ccd) * pixels;
 }
@@ -225,6 +232,7 @@ double predicted_memory(const Plan& plan, const Scene& scene) {
   if (plan.reads > 1 && plan.runs("inter-pixel-capacitance"))  // planes and ramps of all pixels from read to read
     bytes_per_pixel += 5.0 * sizeof(double) + sizeof(float) + 2.0 * sizeof(std::uint8_t);
   if (plan.runs("full-well") || plan.runs("brighter-fatter") || plan.runs("cti")) bytes_per_pixel += sizeof(double);
+  bytes_per_pixel += sizeof(float) * static_cast<double>(kept_images(plan, scene));
   constexpr double kStripPlanes = 3.0;  // expected and drawn electrons, ADU
   const SubPixelRenderer* map = scene.sub_pixel_renderer();
   const bool whole = map != nullptr && !recalls(plan);  // expected electrons, tile by tile

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "astroid/core/readout_nodes.hpp"
+
 namespace astroid {
 
 namespace {
@@ -26,7 +28,7 @@ std::vector<Interval> joined(std::vector<Interval> intervals) {
 }  // namespace
 
 std::vector<Rectangle> reference_regions(std::span<const Rectangle> exposed, const Rectangle& detector,
-                                         const ReferencePixels& reference) {
+                                         const ReferencePixels& reference, int nodes) {
   std::vector<Interval> columns;
   std::vector<Interval> rows;
   for (const Rectangle& r : exposed) {
@@ -41,8 +43,11 @@ std::vector<Rectangle> reference_regions(std::span<const Rectangle> exposed, con
     add({detector.x0 - reference.prescan, r.begin, reference.prescan, r.end - r.begin});
     add({detector.x1(), r.begin, reference.serial_overscan, r.end - r.begin});
   }
-  for (const Interval& c : joined(std::move(columns)))
+  const bool splits = ReadoutNodes(detector, nodes).splits_columns();
+  for (const Interval& c : joined(std::move(columns))) {
     add({c.begin, detector.y1(), c.end - c.begin, reference.parallel_overscan});
+    if (splits) add({c.begin, detector.y0 - reference.parallel_overscan, c.end - c.begin, reference.parallel_overscan});
+  }
   return regions;
 }
 

@@ -9,6 +9,8 @@
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/plane_kernels.hpp"
+#include "astroid/core/units.hpp"
+#include "astroid/sim/rolling_shutter.hpp"
 
 namespace astroid {
 
@@ -22,6 +24,9 @@ bool is_expectation(const EffectSpec& spec) {
 }
 bool makes_light(const EffectSpec& spec) {
   return spec.role == ImageRole::kVaryingLight;
+}
+bool remembers(const EffectSpec& spec) {
+  return spec.role == ImageRole::kMemory;
 }
 bool draws_electrons(const EffectSpec& spec) {
   return (spec.reads & plane_bit::kExpected) != 0 && (spec.writes & plane_bit::kSampled) != 0;
@@ -55,7 +60,6 @@ FrameHeader common_header(const Mission& mission, int camera) {
 void set_time(const Scene& scene, std::int64_t exposure, FrameHeader& header) {
   header.exposure = exposure;
   header.mid_time = scene.mid_time(exposure);
-  constexpr double kSecondsPerDay = 86400.0;
   header.mid_mjd = scene.mission().simulation.start_mjd + header.mid_time.value() / kSecondsPerDay;
 }
 
@@ -70,21 +74,33 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
   const AttitudeParts parts{.jitter = plan.runs("jitter-model") || plan.runs("jitter-file"),
                             .drift = plan.runs("drift"),
                             .repointing = plan.runs("re-pointing")};
-  scene.attitude(parts)->for_each_exposure(
-      scene.mission().simulation.exposures, series->steps, [&](std::span<const Attitude> exposure) {
-        series->moments.push_back(attitude_moments(exposure));
-        for (const Attitude& a : exposure)
-          series->farthest = {std::max(series->farthest.yaw, std::fabs(a.yaw)),
-                              std::max(series->farthest.pitch, std::fabs(a.pitch)),
-                              std::max(series->farthest.roll, std::fabs(a.roll))};
-        // What grows with the exposures is kept small: steps only where nothing else will do.
-        if (treatment == JitterTreatment::kSubSteps)
-          series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
-        if (treatment == JitterTreatment::kPolynomial) {
-          const std::vector<float> weights = exposure_weights(plan.knobs.polynomial, exposure);
-          series->weights.insert(series->weights.end(), weights.begin(), weights.end());
-        }
-      });
+  const auto add = [&](std::span<const Attitude> exposure) {
+    series->moments.push_back(attitude_moments(exposure));
+    for (const Attitude& a : exposure)
+      series->farthest = {std::max(series->farthest.yaw, std::fabs(a.yaw)),
+                          std::max(series->farthest.pitch, std::fabs(a.pitch)),
+                          std::max(series->farthest.roll, std::fabs(a.roll))};
+    // What grows with the exposures is kept small: steps only where nothing else will do.
+    if (treatment == JitterTreatment::kSubSteps)
+      series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
+    if (treatment == JitterTreatment::kPolynomial) {
+      const auto number = static_cast<std::int64_t>(series->moments.size() - 1) / series->bands;
+      const std::vector<float> weights = exposure_weights(plan.knobs.polynomial, exposure, plan.place_in_epoch(number));
+      series->weights.insert(series->weights.end(), weights.begin(), weights.end());
+    }
+  };
+  const SimulationSettings& simulation = scene.mission().simulation;
+  if (!plan.runs("rolling-shutter") || plan.knobs.band_rows <= 0) {
+    scene.attitude(parts)->for_each_exposure(simulation.exposures, series->steps, add);
+    return series;
+  }
+  const std::vector<Seconds> times = band_times(scene.mission(), plan.knobs.band_rows);
+  series->bands = static_cast<int>(times.size());
+  const auto steps = static_cast<std::size_t>(series->steps);
+  for_each_exposure_at(*scene.gapless_attitude(parts), simulation, times, simulation.exposures, series->steps,
+                       [&](std::span<const Attitude> bands) {
+                         for (std::size_t b = 0; b < times.size(); ++b) add(bands.subspan(b * steps, steps));
+                       });
   return series;
 }
 
@@ -97,12 +113,14 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
       exposed_(exposed_strip(*plan_->layout)) {
   constexpr std::size_t kMostEpochs = 3;  // workers are at most a block of exposures apart
   camera_.layout = plan_->layout;
-  camera_.strips = make_strips(*plan_->layout, kStripPixels);
+  camera_.strips = make_strips(*plan_->layout, kStripPixels, plan_->knobs.band_rows);
   for (const Strip& strip : camera_.strips) longest_strip_ = std::max(longest_strip_, strip.size());
   if (attitude_ == nullptr) attitude_ = make_attitude_series(*scene_, *plan_);
   camera_.camera = camera;
   varies_ = std::ranges::any_of(plan_->effects,
                                 [](const PlannedEffect& e) { return e.need.needed && makes_light(e.effect->spec()); });
+  remembers_ = std::ranges::any_of(plan_->effects,
+                                   [](const PlannedEffect& e) { return e.need.needed && remembers(e.effect->spec()); });
   constant_ = conditions_of(*plan_, *scene_, 0);
   header_ = common_header(scene_->mission(), camera);
   for (const PlannedEffect& planned : plan_->effects) {
@@ -118,6 +136,13 @@ Simulator::Simulator(std::shared_ptr<const Scene> scene, std::shared_ptr<const P
   }
   if (plan_->knobs.jitter == JitterTreatment::kPolynomial)
     moving_ = std::make_shared<const MovingImage>(plan_->knobs.polynomial, plan_->layout->size());
+  if (remembers_) {
+    // Those of the latest exposure, and of workers that are a few blocks behind.
+    const std::int64_t block = plan_->knobs.memory_block;
+    const std::size_t images = block > 0 ? static_cast<std::size_t>(camera_.cmos.persistence->reach() / block) : 0;
+    constexpr std::size_t kMore = 4;
+    past_ = std::make_shared<const PastImages>(images + kMore);
+  }
   stages_ = make_stages(source(), false);
 }
 
@@ -135,11 +160,13 @@ std::vector<Simulator::Step> Simulator::expected_steps(Source source) const {
     if (spec.role == ImageRole::kLight) light = std::min(light, i);
     // What is recalled has everything but the varying light, which goes its own way through the responses.
     const bool applies = source == Source::kRender || makes_light(spec) || spec.role == ImageRole::kResponse;
-    if (plan_->effects[i].need.needed && applies) steps.push_back({Act::kApply, i});
+    if (plan_->effects[i].need.needed && applies && !remembers(spec)) steps.push_back({Act::kApply, i});
   }
   if (source == Source::kRender || varies_) steps.insert(steps.begin(), {Act::kClear, light});
   if (source == Source::kRecall && varies_) steps.push_back({Act::kAddRecalled, light});
   if (source == Source::kRecall && !varies_) steps = {{Act::kRecall, light}};
+  for (std::size_t i = 0; i < plan_->effects.size(); ++i)
+    if (plan_->effects[i].need.needed && remembers(plan_->effects[i].effect->spec())) steps.push_back({Act::kApply, i});
   return steps;
 }
 
@@ -206,11 +233,46 @@ ExposureState Simulator::make_state() const {
 }
 
 void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
+  begin_light(exposure, state);
+  if (!remembers_) return;
+  state.still = false;
+  const Mission& mission = scene_->mission();
+  const double quarter = mission.satellite.quarter_days * kSecondsPerDay / mission.simulation.cycle.value();
+  for (const PastCharge& past : past_charge(*camera_.cmos.persistence, exposure, plan_->knobs.memory_block, quarter))
+    state.past.push_back({.electrons = past_image(past.exposure), .share = past.share});
+}
+
+std::shared_ptr<const Plane<float, unit::ExpectedElectrons>> Simulator::past_image(std::int64_t exposure) const {
+  return past_->get(exposure, [&] {
+    ExposureState state = make_state();
+    state.expected.make_whole();
+    begin_light(exposure, state);
+    std::vector<Stage> stages = make_stages(source(), true);
+    for (Stage& stage : stages)
+      std::erase_if(stage.steps, [this](const Step& step) {
+        return step.act == Act::kApply && remembers(plan_->effects[step.effect].effect->spec());
+      });
+    run(stages, state);
+    const std::span<const double> electrons = state.still ? state.recalled->pixels() : state.expected.whole().pixels();
+    Plane<float, unit::ExpectedElectrons> image(plan_->layout);
+    const double full_well = scene_->mission().ccd.full_well.value();
+    std::ranges::transform(electrons, image.pixels().begin(),
+                           [&](double e) { return static_cast<float>(std::min(e, full_well)); });
+    return image;
+  });
+}
+
+void Simulator::begin_light(std::int64_t exposure, ExposureState& state) const {
   state.camera = camera_.camera;
   state.exposure = exposure;
+  state.number = scene_->mission_number(exposure);
   state.read = 0;
   state.attitude = {};
   state.attitude_steps = {};
+  state.bands = {};
+  state.line_time = Seconds(0.0);
+  state.moving.clear();
+  state.past.clear();
   state.recalled = nullptr;
   state.still = false;
   state.lost_electrons = 0.0;
@@ -220,7 +282,8 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   state.frame.header = header_;
   set_time(*scene_, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);
-  state.conditions = plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch) : constant_;
+  state.conditions =
+      plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch, plan_->place_in_epoch(exposure)) : constant_;
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
     if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
       take({Act::kApply, i}, state, whole_);
@@ -231,9 +294,32 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   }
   if (moving_ == nullptr) return;
   const std::size_t maps = plan_->knobs.polynomial.terms.size() - 1;
-  const auto weights = std::span(attitude_->weights).subspan(static_cast<std::size_t>(exposure) * maps, maps);
-  state.moving = moving_->exposure(epoch, state.attitude.mean, weights,
-                                   [&](const Attitude& attitude) { return render(attitude, conditions); });
+  const auto bands = static_cast<std::size_t>(attitude_->bands);
+  const bool in_time = plan_->knobs.polynomial.highest_power_of_time() > 0;
+  const RenderAt at = [&](const MotionPoint& point) {
+    return render(point.attitude, in_time ? conditions_of(*plan_, *scene_, epoch, point.time) : conditions);
+  };
+  for (std::size_t band = 0; band < bands; ++band) {
+    const std::size_t window = static_cast<std::size_t>(exposure) * bands + band;
+    const Attitude& mean = bands > 1 ? attitude_->moments[window].mean : state.attitude.mean;
+    state.moving.push_back(
+        moving_->exposure(epoch, mean, std::span(attitude_->weights).subspan(window * maps, maps), at));
+  }
+}
+
+void Simulator::recall_moving(const ExposureState& state, const Strip& strip, std::span<double> expected) const {
+  if (state.moving.size() == 1) {
+    state.moving.front().recall(strip, expected);
+    return;
+  }
+  for (std::size_t a = 0; a < strip.areas.size(); ++a) {  // each within one band
+    const Rectangle& area = strip.areas[a];
+    Strip part{.begin = strip.area_begins[a], .end = strip.area_begins[a], .areas = {}, .area_begins = {}};
+    part.add(area);
+    const auto band = static_cast<std::size_t>(std::max(0, area.y0 / plan_->knobs.band_rows));
+    state.moving[std::min(band, state.moving.size() - 1)].recall(
+        part, expected.subspan(part.begin - strip.begin, part.size()));
+  }
 }
 
 void Simulator::simulate(std::int64_t exposure, ExposureState& state, const StepObserver& observer) const {
@@ -278,7 +364,9 @@ Plane<double, unit::ExpectedElectrons> Simulator::render(const Attitude& attitud
   std::vector<Stage> stages = make_stages(Source::kRender, true);
   for (Stage& stage : stages)
     std::erase_if(stage.steps, [this](const Step& step) {
-      return step.act == Act::kApply && makes_light(plan_->effects[step.effect].effect->spec());
+      if (step.act != Act::kApply) return false;
+      const EffectSpec& spec = plan_->effects[step.effect].effect->spec();
+      return makes_light(spec) || remembers(spec);
     });
   run(stages, state);
   return std::move(state.expected.whole());
@@ -371,8 +459,12 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
       std::ranges::fill(state.expected.pixels(strip), 0.0);
       return;
     case Act::kRecall:
-      if (moving_ != nullptr) state.moving.recall(strip, state.expected.pixels(strip));
-      return;  // a still image is read where it lies
+      if (moving_ != nullptr)
+        recall_moving(state, strip, state.expected.pixels(strip));
+      else if (!state.still)  // which is read where it lies, unless something is done to it
+        std::ranges::copy(state.recalled->pixels().subspan(strip.begin, strip.size()),
+                          state.expected.pixels(strip).begin());
+      return;
     case Act::kAddRecalled: {
       const std::span<double> expected = state.expected.pixels(strip);
       if (state.recalled != nullptr) {
@@ -380,7 +472,7 @@ void Simulator::take(const Step& step, ExposureState& state, const Strip& strip)
         return;
       }
       state.scratch.resize(strip.size());
-      state.moving.recall(strip, state.scratch);
+      recall_moving(state, strip, state.scratch);
       add_image(expected, state.scratch);
       return;
     }

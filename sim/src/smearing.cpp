@@ -16,10 +16,11 @@ namespace {
 /// Share of the tightest tolerance that the light beyond a star's stamp may smear into an aperture.
 constexpr double kTruncation = 0.01;
 
-double share_of(const Scene& scene) {
+/// Share of the light of `rows` rows that each of them collects.
+double share_of(const Scene& scene, int rows) {
   const Mission& mission = scene.mission();
   if (mission.ccd.smearing.model == SmearingModel::kNone) return 0.0;
-  return clocking_share(mission.ccd.smearing.time.value(), mission.simulation.exposure_time.value(), mission.ccd.rows);
+  return clocking_share(mission.ccd.smearing.time.value(), mission.simulation.exposure_time.value(), rows);
 }
 
 /// A star as it is smeared: with the share of its light that each row collects.
@@ -41,19 +42,23 @@ double sky_of_pixel(const Mission& mission) {
   return (mean_background_rate(mission) * mission.simulation.exposure_time).value();
 }
 
-/// Before the optics take their part, which the conditions know.
-double smeared_sky(const Scene& scene) {
+/// Of a whole column of `rows` rows, before the optics take their part, which the conditions know.
+double smeared_sky(const Scene& scene, int rows) {
   const Mission& mission = scene.mission();
-  return share_of(scene) * mission.ccd.rows * sky_of_pixel(mission) / mean_throughput(mission);
+  return share_of(scene, rows) * rows * sky_of_pixel(mission) / mean_throughput(mission);
 }
 
 }  // namespace
 
-SmearedColumns::SmearedColumns(const Scene& scene, int first, int columns)
+ReadoutNodes readout_nodes(const Scene& scene) {
+  return {scene.detector(), scene.mission().ccd.nodes.count};
+}
+
+SmearedColumns::SmearedColumns(const Scene& scene, int first, int columns, int half)
     : first_(first), electrons_(static_cast<std::size_t>(columns), 0.0) {
   for (auto& change : per_arcsec_) change.assign(electrons_.size(), 0.0);
-  const Rectangle detector = scene.detector();
-  const double share = share_of(scene);
+  const Rectangle rows = readout_nodes(scene).half(scene.detector(), half);
+  const double share = share_of(scene, rows.ny);
   if (share <= 0.0) return;
   std::vector<double> scratch;
   std::vector<double> along_x;
@@ -61,13 +66,12 @@ SmearedColumns::SmearedColumns(const Scene& scene, int first, int columns)
   for (const SceneStar& star : scene.stars()) {
     if (!(star.electrons > 0.0)) continue;
     const StarLight light = smeared_star(scene, star, share);
-    const Rectangle box =
-        intersect(stamp_box(light.centre, light.half_width), {first, detector.y0, columns, detector.ny});
+    const Rectangle box = intersect(stamp_box(light.centre, light.half_width), {first, rows.y0, columns, rows.ny});
     if (box.empty()) continue;
-    add_column_light(scene.psf(), light, detector, first, electrons_, scratch);
+    add_column_light(scene.psf(), light, rows, first, electrons_, scratch);
     along_x.assign(static_cast<std::size_t>(box.nx), 0.0);
     along_y.assign(static_cast<std::size_t>(box.nx), 0.0);
-    add_column_gradient(scene.psf(), light, detector, box.x0, along_x, along_y, scratch);
+    add_column_gradient(scene.psf(), light, rows, box.x0, along_x, along_y, scratch);
     const AttitudeJacobian& j = star.motion;
     const auto begin = static_cast<std::size_t>(box.x0 - first);
     for (std::size_t i = 0; i < along_x.size(); ++i) {
@@ -76,8 +80,8 @@ SmearedColumns::SmearedColumns(const Scene& scene, int first, int columns)
       per_arcsec_[2][begin + i] += along_x[i] * j.dx_droll + along_y[i] * j.dy_droll;
     }
   }
-  const double sky = smeared_sky(scene);
-  for (int x = std::max(first, detector.x0); x < std::min(first + columns, detector.x1()); ++x)
+  const double sky = smeared_sky(scene, rows.ny);
+  for (int x = std::max(first, rows.x0); x < std::min(first + columns, rows.x1()); ++x)
     electrons_[static_cast<std::size_t>(x - first)] += sky;
 }
 
@@ -92,56 +96,85 @@ void SmearedColumns::at(const Attitude& attitude, double throughput, int x0, std
   }
 }
 
-Plane<float, unit::ExpectedElectrons> missing_from_above(const Scene& scene,
-                                                         const std::shared_ptr<const PixelLayout>& layout) {
+namespace {
+
+/// Rows of one half, counted from the one nearest to the register.
+class RowsOfHalf {
+ public:
+  RowsOfHalf(const ReadoutNodes& nodes, const Rectangle& detector, int half)
+      : half_(nodes.half(detector, half)), upwards_(half == 1) {}
+  [[nodiscard]] const Rectangle& area() const { return half_; }
+  [[nodiscard]] int number(int y) const { return upwards_ ? half_.y1() - 1 - y : y - half_.y0; }
+  [[nodiscard]] int row(int number) const { return upwards_ ? half_.y1() - 1 - number : half_.y0 + number; }
+
+ private:
+  Rectangle half_;
+  bool upwards_;
+};
+
+/// Adds what is missing to the rows of a region that lie in one half.
+void add_missing(const Scene& scene, std::span<const StarLight> stars, double missing, const RowsOfHalf& rows,
+                 const ImageView<float, unit::ExpectedElectrons>& view) {
+  const Rectangle area = intersect(view.area(), rows.area());
+  if (area.empty()) return;
+  const auto width = static_cast<std::size_t>(area.nx);
+  const int first = std::min(rows.number(area.y0), rows.number(area.y1() - 1));
+  const int last = first + area.ny;
+  // Light of each row from the first of the region on, the last one standing for all rows behind it.
+  std::vector<double> light((static_cast<std::size_t>(area.ny) + 1) * width, 0.0);
+  std::vector<double> fractions;
+  for (const StarLight& star : stars) {
+    const Rectangle box = intersect(intersect(stamp_box(star.centre, star.half_width), rows.area()),
+                                    {area.x0, rows.area().y0, area.nx, rows.area().ny});
+    if (box.empty()) continue;
+    fractions.resize(box.size());
+    scene.psf().integrate(star.centre, box, fractions);
+    for (int y = box.y0; y < box.y1(); ++y) {
+      const int number = rows.number(y);
+      if (number < first) continue;
+      double* row = light.data() + static_cast<std::size_t>(std::min(number, last) - first) * width;
+      const double* fraction =
+          fractions.data() + static_cast<std::size_t>(y - box.y0) * static_cast<std::size_t>(box.nx);
+      for (int x = box.x0; x < box.x1(); ++x) row[x - area.x0] += star.electrons * missing * fraction[x - box.x0];
+    }
+  }
+  const double sky = smeared_sky(scene, rows.area().ny) * missing / std::max(1, rows.area().ny);
+  for (std::size_t i = 0; i < width; ++i) {
+    double behind = light[static_cast<std::size_t>(area.ny) * width + i];
+    for (int number = last - 1; number >= first; --number) {
+      // A packet sits in its own row for half of the step that begins the transfer, and of the one that ends it.
+      const double own = light[static_cast<std::size_t>(number - first) * width + i];
+      view.at(area.x0 + static_cast<int>(i), rows.row(number)) =
+          static_cast<float>(behind + 0.5 * own + sky * (rows.area().ny - 0.5 - number));
+      behind += own;
+    }
+  }
+}
+
+}  // namespace
+
+Plane<float, unit::ExpectedElectrons> missing_from_behind(const Scene& scene,
+                                                          const std::shared_ptr<const PixelLayout>& layout) {
   const SmearingSettings& smearing = scene.mission().ccd.smearing;
   const double missing = 1.0 - smearing.clear_time / smearing.time;
   if (smearing.model != SmearingModel::kFrameTransfer || missing == 0.0) return {};
-  const Rectangle detector = scene.detector();
-  const double share = share_of(scene) * missing;
-  const double sky = smeared_sky(scene) * missing / std::max(1, detector.ny);
   Plane<float, unit::ExpectedElectrons> result(layout);
-  std::vector<StarLight> stars;
-  std::vector<double> fractions;
-  for (const SceneStar& star : scene.stars())
-    if (star.electrons > 0.0) stars.push_back(smeared_star(scene, star, share_of(scene)));
-  for (std::size_t r = 0; r < layout->exposed_regions().size(); ++r) {
-    const Rectangle& area = layout->regions()[r];
-    const auto width = static_cast<std::size_t>(area.nx);
-    // Light of each row from the first of the region on, the last one standing for all rows beyond it.
-    std::vector<double> rows(area.size() + width, 0.0);
-    for (const StarLight& star : stars) {
-      const Rectangle box = intersect(intersect(stamp_box(star.centre, star.half_width), detector),
-                                      {area.x0, area.y0, area.nx, detector.y1() - area.y0});
-      if (box.empty()) continue;
-      fractions.resize(box.size());
-      scene.psf().integrate(star.centre, box, fractions);
-      for (int y = box.y0; y < box.y1(); ++y) {
-        double* row = rows.data() + static_cast<std::size_t>(std::min(y, area.y1()) - area.y0) * width;
-        const double* fraction =
-            fractions.data() + static_cast<std::size_t>(y - box.y0) * static_cast<std::size_t>(box.nx);
-        for (int x = box.x0; x < box.x1(); ++x)
-          row[x - area.x0] += star.electrons / share_of(scene) * share * fraction[x - box.x0];
-      }
-    }
-    const auto view = result.view(r);
-    for (std::size_t i = 0; i < width; ++i) {
-      double above = rows[area.size() + i];
-      for (int y = area.y1() - 1; y >= area.y0; --y) {
-        // A packet sits in its own row for half of the step that begins the transfer, and of the one that ends it.
-        const double own = rows[static_cast<std::size_t>(y - area.y0) * width + i];
-        view.row(y)[i] = static_cast<float>(above + 0.5 * own + sky * (detector.y1() - 0.5 - y));
-        above += own;
-      }
-    }
+  const ReadoutNodes nodes = readout_nodes(scene);
+  for (int half = 0; half < nodes.halves(); ++half) {
+    const RowsOfHalf rows(nodes, scene.detector(), half);
+    std::vector<StarLight> stars;
+    for (const SceneStar& star : scene.stars())
+      if (star.electrons > 0.0) stars.push_back(smeared_star(scene, star, share_of(scene, rows.area().ny)));
+    for (std::size_t r = 0; r < layout->exposed_regions().size(); ++r)
+      add_missing(scene, stars, missing, rows, result.view(r));
   }
   return result;
 }
 
-std::vector<double> smeared_electrons(const Scene& scene) {
+std::vector<double> smeared_electrons(const Scene& scene, int half) {
   if (scene.mission().ccd.smearing.model == SmearingModel::kNone) return {};
   std::vector<double> electrons(static_cast<std::size_t>(scene.detector().nx));
-  SmearedColumns(scene, 0, scene.detector().nx).at({}, mean_throughput(scene.mission()), 0, electrons);
+  SmearedColumns(scene, 0, scene.detector().nx, half).at({}, mean_throughput(scene.mission()), 0, electrons);
   return electrons;
 }
 

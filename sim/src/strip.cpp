@@ -22,7 +22,7 @@ Strip exposed_strip(const PixelLayout& layout) {
   return strip_of(layout.exposed_regions());
 }
 
-std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels) {
+std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels, int band_rows) {
   std::vector<Strip> strips;
   Strip strip;
   const auto finish = [&] {
@@ -43,8 +43,9 @@ std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels) {
     const auto width = static_cast<std::size_t>(region.nx);
     for (int y = region.y0; y < region.y1();) {
       const std::size_t room = pixels > strip.size() ? pixels - strip.size() : 0;
-      const auto rows =
-          static_cast<int>(std::clamp<std::size_t>(room / width, 1, static_cast<std::size_t>(region.y1() - y)));
+      int end = region.y1();
+      if (band_rows > 0 && y >= 0) end = std::min(end, (y / band_rows + 1) * band_rows);
+      const auto rows = static_cast<int>(std::clamp<std::size_t>(room / width, 1, static_cast<std::size_t>(end - y)));
       strip.add({region.x0, y, region.nx, rows});
       y += rows;
       if (strip.size() + width > pixels) finish();

@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "astroid/core/frame.hpp"
 #include "astroid/sim/inter_pixel_capacitance.hpp"
+#include "astroid/sim/persistence.hpp"
 #include "astroid/sim/ramp_fit.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "astroid/sim/telegraph.hpp"
@@ -63,6 +65,23 @@ void BM_Telegraph(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(telegraph_is_high(stream, {3, 5}, process, step++));
 }
 BENCHMARK(BM_Telegraph)->Arg(10)->Arg(100)->Arg(10000);
+
+/// Strips of a frame that gain what as many earlier images release, and lose what is trapped.
+void BM_Persistence(benchmark::State& state) {
+  constexpr std::size_t kPixels = 512 * 512;
+  const std::vector<std::vector<float>> past(static_cast<std::size_t>(state.range(0)),
+                                             std::vector<float>(kPixels, 1000.0F));
+  std::vector<double> strip(kStripPixels, 1000.0);
+  for (auto _ : state)
+    for (std::size_t begin = 0; begin < kPixels; begin += kStripPixels) {
+      for (const std::vector<float>& image : past)
+        add_released(std::span(image).subspan(begin, kStripPixels), 1e-4, strip);
+      take_trapped(1e-3, Electrons(8e4), strip);
+      benchmark::ClobberMemory();
+    }
+  state.counters["time/pixel"] = per_item(state, static_cast<double>(kPixels));
+}
+BENCHMARK(BM_Persistence)->Arg(0)->Arg(1)->Arg(8)->Arg(32);
 
 /// 512 x 512 px with sky and a few stars; with neighbours coupled, a read of all pixels waits for the one before.
 void BM_CmosExposure(benchmark::State& state) {

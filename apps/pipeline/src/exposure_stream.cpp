@@ -90,7 +90,8 @@ std::unique_ptr<LightCurveWriter> open_light_curves(std::span<const StreamGroup>
                           .start_mjd = mission.simulation.start_mjd,
                           .cycle = mission.simulation.cycle.value(),
                           .exposure_time = mission.simulation.exposure_time.value(),
-                          .history = history_of(*groups.front().plan, scene)};
+                          .history = history_of(*groups.front().plan, scene),
+                          .line_time = line_time(mission).value()};
   for (const std::size_t group : group_of) {
     header.group.push_back(static_cast<int>(group));
     header.stagger.push_back(groups[group].scene->mission().simulation.stagger.value());
@@ -125,16 +126,30 @@ std::vector<Simulator> make_simulators(std::span<const StreamGroup> groups, std:
   return simulators;
 }
 
+/// Flags that hold for every exposure, whichever estimators measure it.
+std::vector<std::uint32_t> own_flags_of(const StreamGroup& group) {
+  std::vector<std::uint32_t> flags = own_flags_of(group.estimators);
+  for (const EstimatorRefresh& refresh : group.refreshes)
+    for (std::size_t t = 0; t < flags.size(); ++t) flags[t] &= refresh.estimators[t].flags;
+  return flags;
+}
+
 std::vector<GroupInput> group_inputs(std::span<const StreamGroup> groups, const std::filesystem::path& folder) {
   std::vector<GroupInput> inputs;
   inputs.reserve(groups.size());
   for (const StreamGroup& group : groups) {
     const Mission& mission = group.scene->mission();
+    std::vector<EstimatorStretch> stretches;
+    const auto add = [&](std::int64_t first, std::span<const StarEstimator> estimators) {
+      stretches.push_back(
+          {first, EstimatorSet(estimators, mission.ccd.gain, mission.ccd.bias), reference_of(estimators)});
+    };
+    add(0, group.estimators);
+    for (const EstimatorRefresh& refresh : group.refreshes) add(refresh.first, refresh.estimators);
     inputs.push_back({.mission = mission,
                       .calibration = FrameCalibration(*group.scene->layout(), calibration_model(mission)),
-                      .estimators = EstimatorSet(group.estimators, mission.ccd.gain, mission.ccd.bias),
-                      .reference = reference_of(group.estimators),
-                      .own_flags = own_flags_of(group.estimators),
+                      .stretches = std::move(stretches),
+                      .own_flags = own_flags_of(group),
                       .images = ImageFiles(*group.scene, *group.plan, folder)});
   }
   return inputs;
@@ -148,8 +163,8 @@ class Stream {
       : series_(series),
         threads_(threads),
         batch_length_(batch_length),
-        blocks_{FluxBlock(input.groups.front().estimators.size(), static_cast<std::size_t>(block_length)),
-                FluxBlock(input.groups.front().estimators.size(), static_cast<std::size_t>(block_length))},
+        blocks_{FluxBlock(input.groups.front().own_flags.size(), static_cast<std::size_t>(block_length)),
+                FluxBlock(input.groups.front().own_flags.size(), static_cast<std::size_t>(block_length))},
         lost_electrons_(input.simulators.size()) {
     workers_.reserve(static_cast<std::size_t>(threads));
     for (int i = 0; i < threads; ++i) workers_.emplace_back(input, batch_length);

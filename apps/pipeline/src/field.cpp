@@ -27,7 +27,7 @@ StarCatalogue read_and_convert(const Mission& mission, const std::string& file) 
 /// Flux of a star in an exposure, relative to its catalogued one.
 double relative_flux(const Scene& scene, const SceneStar& star, std::int64_t exposure) {
   if (star.variability < 0) return 1.0;
-  const double middle = scene.mid_time(exposure).value();
+  const double middle = scene.mission_time(exposure).value();
   const double half = 0.5 * scene.mission().simulation.exposure_time.value();
   return scene.variables()[static_cast<std::size_t>(star.variability)].variability.mean(middle - half, middle + half);
 }

@@ -12,6 +12,7 @@
 #include "astroid/core/calendar.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/fits_writer.hpp"
+#include "astroid/core/units.hpp"
 #include "folders.hpp"
 
 namespace astroid {
@@ -19,7 +20,6 @@ namespace astroid {
 namespace {
 
 constexpr int kSixteenBits = 16;
-constexpr double kSecondsPerDay = 86400.0;
 
 std::string file_name(int camera, std::int64_t exposure) {
   return fmt::format("camera{}_{:06}", camera + 1, exposure);
@@ -148,7 +148,8 @@ void write_reference_pixels(FitsWriter& fits, const Frame& frame, FitsNumber num
   for (std::size_t r = layout.exposed_regions().size(); r < layout.regions().size(); ++r) {
     const Rectangle& area = layout.regions()[r];
     const bool is_prescan = area.x1() <= detector.x0;
-    const std::string name = is_prescan ? "PRESCAN" : area.y0 >= detector.y1() ? "OVERSCAN" : "SERIAL-OVERSCAN";
+    const bool is_overscan = area.y0 >= detector.y1() || area.y1() <= detector.y0;
+    const std::string name = is_prescan ? "PRESCAN" : is_overscan ? "OVERSCAN" : "SERIAL-OVERSCAN";
     fits.begin_image(number, {area.nx, area.ny}, name);
     fits.card({"EXTVER", ++versions[name], "number among those of this name"});
     fits.card({"BUNIT", "adu", "unit of the pixels"});

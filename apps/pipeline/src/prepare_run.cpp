@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -19,6 +20,8 @@
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run.hpp"
+#include "astroid/sim/aberration.hpp"
+#include "astroid/sim/attitude_trend.hpp"
 #include "astroid/sim/smearing.hpp"
 
 namespace astroid {
@@ -130,6 +133,10 @@ void believe_readout(const Scene& scene, GroundModel& model) {
   const CcdSettings& ccd = scene.mission().ccd;
   const FrameCalibration calibration(*scene.layout(), calibration_model(scene.mission()));
   model.smearing.electrons = smeared_electrons(scene);
+  if (const ReadoutNodes nodes = readout_nodes(scene); nodes.splits_columns()) {
+    model.smearing.upper = smeared_electrons(scene, 1);
+    model.smearing.upper_row = nodes.middle_y();
+  }
   model.smearing.overscan_rows = calibration.overscan_rows();
   model.bias_variance = calibration.bias_variance();
   model.bias_is_measured = scene.mission().photometry.calibration.bias == BiasSource::kPrescan;
@@ -177,12 +184,62 @@ Ground perfect_ground(const Scene& scene) {
   return perfect_ground(scene, scene.targets());
 }
 
+namespace {
+
+/// Exposures between two refreshes of the masks; 0 where they are made once, or nothing leads the stars away.
+std::int64_t exposures_per_refresh(const Scene& scene) {
+  const Mission& mission = scene.mission();
+  const double refresh = mission.photometry.mask_refresh.value();
+  if (!(refresh > 0.0) || (scene.attitude_trend().is_still() && !mission.satellite.aberration)) return 0;
+  return std::max<std::int64_t>(1, std::llround(refresh / mission.simulation.cycle.value()));
+}
+
+/// The stars where they are in the middle of exposures first … last-1, but for jitter.
+std::vector<FieldStar> stars_in_between(const Scene& scene, std::int64_t first, std::int64_t last) {
+  const SimulationSettings& simulation = scene.mission().simulation;
+  const std::int64_t middle = first + (last - first) / 2;
+  const double start = static_cast<double>(middle) * simulation.cycle.value();
+  const double time = scene.mid_time(middle).value();
+  const Attitude trend = scene.attitude_trend().at(time, start);
+  const Velocity velocity =
+      scene.mission().satellite.aberration ? velocity_since_start(simulation, Seconds(time)) : Velocity{};
+  std::vector<FieldStar> stars = field_stars(scene);
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    const SceneStar& star = scene.stars()[i];
+    const PixelShift drift = displacement(star.motion, trend);
+    const PixelShift aberration = star.aberration.displacement(velocity);
+    stars[i].position.x += drift.dx + aberration.dx;
+    stars[i].position.y += drift.dy + aberration.dy;
+  }
+  return stars;
+}
+
+}  // namespace
+
 GroundSegment perfect_ground_segment(const PreparedRun& run) {
   GroundSegment segment;
   for (const PreparedGroup& group : run.groups) {
-    segment.grounds.push_back(perfect_ground(*group.scene, group.targets));
-    segment.estimators.push_back(
-        build_estimators(*group.scene->layout(), segment.grounds.back().model, group.scene->mission().photometry));
+    const Scene& scene = *group.scene;
+    segment.grounds.push_back(perfect_ground(scene, group.targets));
+    Ground& ground = segment.grounds.back();
+    segment.refreshes.emplace_back();
+    const std::int64_t exposures = scene.mission().simulation.exposures;
+    const std::int64_t each = exposures_per_refresh(scene);
+    const auto build = [&] { return build_estimators(*scene.layout(), ground.model, scene.mission().photometry); };
+    if (each == 0) {
+      segment.estimators.push_back(build());
+      continue;
+    }
+    // From the last stretch to the first, whose places the ground then keeps.
+    for (std::int64_t first = (exposures - 1) / each * each; first >= 0; first -= each) {
+      ground.stars = stars_in_between(scene, first, std::min(first + each, exposures));
+      ground.model.stars = ground.stars;
+      if (first > 0)
+        segment.refreshes.back().push_back({first, build()});
+      else
+        segment.estimators.push_back(build());
+    }
+    std::ranges::reverse(segment.refreshes.back());
   }
   return segment;
 }
@@ -192,7 +249,9 @@ std::vector<StreamGroup> stream_groups(const PreparedRun& run, const GroundSegme
   for (std::size_t g = 0; g < run.groups.size(); ++g) {
     const std::span<const StarEstimator> estimators =
         ground.estimators.empty() ? std::span<const StarEstimator>() : std::span(ground.estimators[g]);
-    groups.push_back({run.groups[g].scene, run.groups[g].plan, estimators, run.groups[g].share});
+    const std::span<const EstimatorRefresh> refreshes =
+        ground.refreshes.empty() ? std::span<const EstimatorRefresh>() : std::span(ground.refreshes[g]);
+    groups.push_back({run.groups[g].scene, run.groups[g].plan, estimators, run.groups[g].share, refreshes});
   }
   return groups;
 }

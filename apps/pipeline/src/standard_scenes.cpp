@@ -118,6 +118,13 @@ std::vector<StandardScene> standard_scenes() {
     m.cmos.telegraph_fraction = 0.01;
     m.cmos.telegraph_current = ElectronsPerSecond(5.0);
   }
+  {
+    Mission& m = add("a CMOS detector that remembers, with a rolling shutter", kFew);
+    jitter(m, 0.04);
+    m.simulation.type = DetectorType::kCmos;
+    m.cmos.persistence = {.fraction = {0.003, 0.001}, .time = {60.0, 900.0}};
+    m.cmos.line_time = Seconds(0.04);
+  }
   return scenes;
 }
 

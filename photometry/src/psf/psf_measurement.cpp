@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/units.hpp"
 #include "field/field_fit.hpp"
 #include "field/field_pixels.hpp"
 #include "psf/psf_fit.hpp"
@@ -23,7 +24,6 @@ namespace {
 constexpr int kLargestStamp = 40;       // px, half-side
 constexpr int kMargin = 8;              // px
 constexpr std::size_t kLeastStars = 10;
-constexpr double kFwhmPerSigma = 2.3548200450309493;
 constexpr double kPixelVariance = 1.0 / 12.0;  // px²
 
 void check(const PsfMeasurementSettings& s) {

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "astroid/core/pixel_noise.hpp"
@@ -38,24 +40,50 @@ std::span<const std::uint32_t> within(std::span<const std::uint32_t> pixels, con
   return {first, last};
 }
 
+/// Calls visit(place in the buffer, entry) for the entries of a list that lie on exposed pixels.
+template <class Entry, class Visit>
+void for_each_listed(const PixelLayout& layout, const std::vector<Entry>& list, Visit&& visit) {
+  for (std::size_t r = 0; r < layout.exposed_regions().size(); ++r) {
+    const Rectangle& area = layout.regions()[r];
+    for (const Entry& entry : list) {
+      if (!area.contains(entry.x, entry.y)) continue;
+      const std::size_t within = static_cast<std::size_t>(entry.y - area.y0) * static_cast<std::size_t>(area.nx) +
+                                 static_cast<std::size_t>(entry.x - area.x0);
+      visit(static_cast<std::uint32_t>(layout.offset(r) + within), entry);
+    }
+  }
+}
+
 double pixels_on(const Mission& mission, double fraction) {
   return fraction * mission.ccd.columns * mission.ccd.rows;
+}
+
+/// How many there are, in words.
+std::string how_many(const char* kind, double drawn, std::size_t listed) {
+  if (listed == 0) return fmt::format("{:.4g} {} pixels are expected on the detector", drawn, kind);
+  const std::string known = fmt::format("{} {} pixels are listed", listed, kind);
+  return drawn > 0.0 ? fmt::format("{} and {:.4g} more expected", known, drawn) : known;
 }
 
 }  // namespace
 
 EffectNeed DeadPixels::is_needed(const SceneSummary& scene) const {
   const double fraction = scene.mission->ccd.bad_pixels.dead;
-  if (fraction <= 0.0) return {false, "no pixel is dead", 0.0, 0.0};
+  if (fraction <= 0.0 && scene.listed_dead == 0) return {false, "no pixel is dead", 0.0, 0.0};
   const double lost = scene.psf.peak_fraction * scene.brightest_target_electrons;
   return {true,
-          fmt::format("{:.4g} dead pixels are expected on the detector; one takes up to {:.4g} e- from a target",
-                      pixels_on(*scene.mission, fraction), lost),
+          fmt::format("{}; one takes up to {:.4g} e- from a target",
+                      how_many("dead", pixels_on(*scene.mission, fraction), scene.listed_dead), lost),
           lost, 1.0};
 }
 
 void DeadPixels::prepare(CameraState& camera, const PrepareContext& context) const {
-  camera.dead_pixels = drawn_pixels(context.stream, *camera.layout, context.scene.mission().ccd.bad_pixels.dead);
+  std::vector<std::uint32_t>& dead = camera.dead_pixels;
+  dead = drawn_pixels(context.stream, *camera.layout, context.scene.mission().ccd.bad_pixels.dead);
+  for_each_listed(*camera.layout, context.scene.bad_pixels().dead,
+                  [&](std::uint32_t place, const DeadPixel&) { dead.push_back(place); });
+  std::ranges::sort(dead);
+  dead.erase(std::unique(dead.begin(), dead.end()), dead.end());
 }
 
 void DeadPixels::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
@@ -65,31 +93,45 @@ void DeadPixels::apply(ExposureState& state, const EffectContext& context, const
 
 EffectNeed HotPixels::is_needed(const SceneSummary& scene) const {
   const BadPixelSettings& bad = scene.mission->ccd.bad_pixels;
-  const double level = (bad.hot_current * scene.mission->simulation.exposure_time).value();
-  if (bad.hot <= 0.0 || level <= 0.0) return {false, "no pixel is hot", 0.0, 0.0};
+  const double drawn = bad.hot > 0.0 ? (bad.hot_current * scene.mission->simulation.exposure_time).value() : 0.0;
+  const double level = std::max(drawn, scene.hottest);
+  if (level <= 0.0) return {false, "no pixel is hot", 0.0, 0.0};
   return {true,
-          fmt::format("{:.4g} hot pixels are expected on the detector; each adds {:.4g} e- per exposure",
-                      pixels_on(*scene.mission, bad.hot), level),
+          fmt::format("{}; each adds {}{:.4g} e- per exposure",
+                      how_many("hot", pixels_on(*scene.mission, bad.hot), scene.listed_hot),
+                      scene.listed_hot > 0 ? "up to " : "", level),
           level, 1.0};
 }
 
 void HotPixels::prepare(CameraState& camera, const PrepareContext& context) const {
-  camera.hot_pixels = drawn_pixels(context.stream, *camera.layout, context.scene.mission().ccd.bad_pixels.hot);
+  const Mission& mission = context.scene.mission();
+  const Seconds exposure = mission.simulation.exposure_time;
+  std::map<std::uint32_t, double> electrons;
+  for (const std::uint32_t place : drawn_pixels(context.stream, *camera.layout, mission.ccd.bad_pixels.hot))
+    electrons[place] = (mission.ccd.bad_pixels.hot_current * exposure).value();
+  for_each_listed(*camera.layout, context.scene.bad_pixels().hot, [&](std::uint32_t place, const HotPixel& hot) {
+    electrons[place] += (hot.current * exposure).value();
+  });
+  for (const auto& [place, level] : electrons) {
+    camera.hot_pixels.push_back(place);
+    camera.hot_electrons.push_back(level);
+  }
 }
 
 void HotPixels::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
-  const Mission& mission = context.scene.mission();
-  const double level = (mission.ccd.bad_pixels.hot_current * mission.simulation.exposure_time).value();
   const std::span<double> expected = state.expected.pixels(strip);
-  for (const std::uint32_t pixel : within(context.camera.hot_pixels, strip)) expected[pixel - strip.begin] += level;
+  const CameraState& camera = context.camera;
+  const std::span<const std::uint32_t> hot = within(camera.hot_pixels, strip);
+  const double* level = camera.hot_electrons.data() + (hot.data() - camera.hot_pixels.data());
+  for (const std::uint32_t pixel : hot) expected[pixel - strip.begin] += *level++;
 }
 
 EffectNeed BadPixelMap::is_needed(const SceneSummary& scene) const {
   const BadPixelSettings& bad = scene.mission->ccd.bad_pixels;
   const double fraction = bad.dead + bad.hot;
-  if (fraction <= 0.0) return {false, "every pixel works", 0.0, 0.0};
-  return {true, fmt::format("{:.4g} bad pixels are expected on the detector", pixels_on(*scene.mission, fraction)), 0.0,
-          0.0};
+  const std::size_t listed = scene.listed_dead + scene.listed_hot;
+  if (fraction <= 0.0 && listed == 0) return {false, "every pixel works", 0.0, 0.0};
+  return {true, how_many("bad", pixels_on(*scene.mission, fraction), listed), 0.0, 0.0};
 }
 
 void BadPixelMap::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {

@@ -29,7 +29,7 @@ EffectNeed BiasDrift::is_needed(const SceneSummary& scene) const {
 
 void BiasDrift::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const ElectronicsSettings& electronics = context.scene.mission().ccd.electronics;
-  const double drift = slow_drift(context.scene.mid_time(state.exposure), electronics);
+  const double drift = slow_drift(context.scene.mission_time(state.exposure), electronics);
   add_constant(state.analog.pixels(strip), electronics.bias_drift * drift);
 }
 
@@ -57,7 +57,7 @@ void RowOffset::apply(ExposureState& state, const EffectContext& context, const 
     // The draw of a row is that of its pixel (node, row), the same for whatever part of the row is computed.
     const std::array draws{Rectangle{0, area.y0, kMostNodes, area.ny}};
     normals.resize(draws[0].size());
-    pixel_normals(context.stream, {.areas = draws, .exposure = static_cast<std::uint32_t>(state.exposure)}, normals);
+    pixel_normals(context.stream, {.areas = draws, .exposure = static_cast<std::uint32_t>(state.number)}, normals);
     const auto view = state.analog.view(strip, a);
     for (int y = area.y0; y < area.y1(); ++y) {
       const std::span<const float> of_row = std::span(normals).subspan(

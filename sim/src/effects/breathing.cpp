@@ -40,7 +40,7 @@ EffectNeed Breathing::is_needed(const SceneSummary& scene) const {
 }
 
 void Breathing::set_conditions(const Scene& scene, Seconds time, Conditions& conditions) const {
-  conditions.psf_variance += breathing_variance(scene.mission().psf.breathing, time);
+  conditions.psf_variance += breathing_variance(scene.mission().psf.breathing, quarter_start(scene.mission()) + time);
 }
 
 void Breathing::apply(ExposureState& /*state*/, const EffectContext& /*context*/, const Strip& /*strip*/) const {}

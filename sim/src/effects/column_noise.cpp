@@ -25,7 +25,7 @@ std::span<const float> shared_normals(const EffectContext& context, ExposureStat
   state.normals.resize(line.size());
   pixel_normals(context.stream,
                 {.areas = {&line, 1},
-                 .exposure = static_cast<std::uint32_t>(state.exposure),
+                 .exposure = static_cast<std::uint32_t>(state.number),
                  .read = static_cast<std::uint16_t>(state.read),
                  .draw = draw},
                 state.normals);

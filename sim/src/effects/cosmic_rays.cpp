@@ -56,7 +56,7 @@ void CosmicRays::apply(ExposureState& state, const EffectContext& context, const
   const Mission& mission = context.scene.mission();
   const CosmicRayModel model = cosmic_ray_model(mission, reads_of(mission));
   if (model.hits_per_pixel <= 0.0) return;
-  const CosmicTime time{static_cast<std::uint32_t>(state.exposure), static_cast<std::uint16_t>(state.read)};
+  const CosmicTime time{static_cast<std::uint32_t>(state.number), static_cast<std::uint16_t>(state.read)};
   for (std::size_t a = 0; a < strip.areas.size(); ++a) {
     const auto electrons = state.sampled.view(strip, a);
     const ImageView<std::uint8_t, unit::Flags> flags{state.computed().flags.pixels().data() + strip.area_begins[a],

@@ -37,7 +37,7 @@ void GainEffect::apply(ExposureState& state, const EffectContext& context, const
   const CcdSettings& ccd = context.scene.mission().ccd;
   const double gain =
       ccd.gain.value() *
-      (1.0 + ccd.electronics.gain_drift * slow_drift(context.scene.mid_time(state.exposure), ccd.electronics));
+      (1.0 + ccd.electronics.gain_drift * slow_drift(context.scene.mission_time(state.exposure), ccd.electronics));
   const std::span<const double> sampled = state.sampled.pixels(strip);
   const std::span<double> analog = state.analog.pixels(strip);
   if (!differs_between_nodes(ccd.nodes)) {

@@ -6,6 +6,7 @@
 #include "astroid/core/psf.hpp"
 #include "astroid/sim/scene.hpp"
 #include "effects/need.hpp"
+#include "effects/rolling_shutter.hpp"
 
 namespace astroid {
 
@@ -20,10 +21,11 @@ void Ghosts::apply(ExposureState& state, const EffectContext& context, const Str
   const double radius = context.scene.mission().telescope.ghosts.radius.value();
   const double per_area = state.conditions.throughput / (kPi * radius * radius);
   for (const Ghost& ghost : context.scene.ghosts()) {
-    const PixelShift shift = displacement(ghost.motion, state.attitude.mean);
-    const PixelPosition centre{ghost.position.x + shift.dx, ghost.position.y + shift.dy};
-    const Rectangle box = stamp_box(centre, radius);
     for (std::size_t a = 0; a < strip.areas.size(); ++a) {
+      look_at_row(state, strip.areas[a].y0);
+      const PixelShift shift = displacement(ghost.motion, state.attitude.mean);
+      const PixelPosition centre{ghost.position.x + shift.dx, ghost.position.y + shift.dy};
+      const Rectangle box = stamp_box(centre, radius);
       const Rectangle part = intersect(box, strip.areas[a]);
       if (part.empty()) continue;
       const auto view = state.expected.view(strip, a);

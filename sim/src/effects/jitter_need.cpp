@@ -27,7 +27,9 @@ EffectNeed jitter_need(const SceneSummary& scene) {
 }
 
 void take_attitude(ExposureState& state, const AttitudeSeries& series) {
-  const auto exposure = static_cast<std::size_t>(state.exposure);
+  // With a rolling shutter that of the middle band, until rows are looked at.
+  const auto bands = static_cast<std::size_t>(series.bands);
+  const std::size_t exposure = static_cast<std::size_t>(state.exposure) * bands + bands / 2;
   ASTROID_CHECK_LT(exposure, series.moments.size());
   state.attitude = series.moments[exposure];
   if (series.samples.empty()) return;

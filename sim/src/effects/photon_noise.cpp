@@ -24,7 +24,7 @@ void PhotonNoise::apply(ExposureState& state, const EffectContext& context, cons
   const Mission& mission = context.scene.mission();
   const int reads = mission.simulation.type == DetectorType::kCmos ? mission.cmos.reads : 1;
   const std::span<double> sampled = state.sampled.pixels(strip);
-  PixelPlaces places = noise_of(strip, state.exposure);
+  PixelPlaces places = noise_of(strip, state.number);
   if (reads <= 1) {
     pixel_poisson(context.stream, places, state.expectation(strip), sampled);
     return;

@@ -31,7 +31,7 @@ EffectNeed PickUpNoise::is_needed(const SceneSummary& scene) const {
 void PickUpNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   constexpr double kTurn = 2.0 * std::numbers::pi;
   const PickUpSettings& wave = context.scene.mission().ccd.electronics.pick_up;
-  const double phase = kTurn * uniform_at_step(context.stream, {.step = static_cast<std::uint64_t>(state.exposure)});
+  const double phase = kTurn * uniform_at_step(context.stream, {.step = static_cast<std::uint64_t>(state.number)});
   for (std::size_t a = 0; a < strip.areas.size(); ++a) {
     const Rectangle& area = strip.areas[a];
     const auto columns = static_cast<std::size_t>(area.nx);

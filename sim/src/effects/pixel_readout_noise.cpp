@@ -34,7 +34,7 @@ void PixelReadoutNoise::apply(ExposureState& state, const EffectContext& context
   const Mission& mission = context.scene.mission();
   const double rms = mission.ccd.readout_noise.value() / mission.ccd.gain.value();
   const std::span<double> analog = state.analog.pixels(strip);
-  PixelPlaces places = noise_of(strip, state.exposure);
+  PixelPlaces places = noise_of(strip, state.number);
   places.read = static_cast<std::uint16_t>(state.read);
   if (context.camera.cmos.readout_noise.empty()) {
     add_pixel_normals(context.stream, places, rms, analog);

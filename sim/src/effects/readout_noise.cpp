@@ -42,7 +42,7 @@ void ReadoutNoise::apply(ExposureState& state, const EffectContext& context, con
   const double rms = ccd.readout_noise.value();
   const std::span<double> sampled = state.sampled.pixels(strip);
   if (!differs_between_nodes(ccd.nodes)) {
-    add_pixel_normals(context.stream, noise_of(strip, state.exposure), rms, sampled);
+    add_pixel_normals(context.stream, noise_of(strip, state.number), rms, sampled);
     return;
   }
   const ReadoutNodes nodes(context.scene.detector(), ccd.nodes.count);
@@ -53,7 +53,7 @@ void ReadoutNoise::apply(ExposureState& state, const EffectContext& context, con
       for_each_node(nodes, y, area.x0, area.x1(), [&](int node, int x0, int x1) {
         const std::array part{Rectangle{x0, y, x1 - x0, 1}};
         const double factor = ccd.nodes.noise_factor[static_cast<std::size_t>(node)];
-        add_pixel_normals(context.stream, {.areas = part, .exposure = static_cast<std::uint32_t>(state.exposure)},
+        add_pixel_normals(context.stream, {.areas = part, .exposure = static_cast<std::uint32_t>(state.number)},
                           factor * rms, sampled.subspan(begin, part[0].size()));
         begin += part[0].size();
       });

@@ -19,7 +19,7 @@ EffectNeed ResetNoise::is_needed(const SceneSummary& scene) const {
 void ResetNoise::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {
   const Mission& mission = context.scene.mission();
   const double rms = mission.cmos.reset_noise.value() / mission.ccd.gain.value();
-  add_pixel_normals(context.stream, noise_of(strip, state.exposure), rms, state.analog.pixels(strip));
+  add_pixel_normals(context.stream, noise_of(strip, state.number), rms, state.analog.pixels(strip));
 }
 
 }  // namespace astroid

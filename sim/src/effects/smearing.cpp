@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "astroid/core/column_light.hpp"
@@ -22,8 +23,10 @@ EffectNeed smearing_need(const SceneSummary& scene, SmearingModel model) {
             smearing.model == SmearingModel::kNone ? "the detector has a shutter (smearing none)"
                                                    : "the detector is read in another way",
             0.0, 0.0};
-  const double share =
-      clocking_share(smearing.time.value(), mission.simulation.exposure_time.value(), mission.ccd.rows);
+  const ReadoutNodes nodes({0, 0, mission.ccd.columns, mission.ccd.rows}, mission.ccd.nodes.count);
+  // The upper half is the smaller one where the rows are odd.
+  const int rows = nodes.splits_columns() ? mission.ccd.rows - nodes.middle_y() : mission.ccd.rows;
+  const double share = clocking_share(smearing.time.value(), mission.simulation.exposure_time.value(), rows);
   const double level = share * scene.brightest_column;
   EffectNeed need = background_need(scene, level, "what the brightest column smears into each of its pixels");
   need.why = fmt::format("{} (every row collects {:.3g} of a column's light)", need.why, share);
@@ -37,19 +40,28 @@ void prepare_columns(CameraState& camera, const Scene& scene) {
     first = std::min(first, std::max(area.x0, scene.detector().x0));
     last = std::max(last, std::min(area.x1(), scene.detector().x1()));
   }
-  camera.smearing = std::make_shared<const SmearedColumns>(scene, first, std::max(0, last - first));
+  auto halves = std::make_shared<std::vector<SmearedColumns>>();
+  for (int half = 0; half < readout_nodes(scene).halves(); ++half)
+    halves->emplace_back(scene, first, std::max(0, last - first), half);
+  camera.smearing = std::move(halves);
 }
 
 void add_to_rows(ExposureState& state, const EffectContext& context, const Strip& strip) {
   const Rectangle detector = context.scene.detector();
+  const ReadoutNodes nodes = readout_nodes(context.scene);
   std::vector<double> smeared;
   for (std::size_t a = 0; a < strip.areas.size(); ++a) {
     const Rectangle& area = strip.areas[a];
     if (area.x0 < detector.x0 || area.x1() > detector.x1()) continue;  // prescan and serial overscan
     smeared.resize(static_cast<std::size_t>(area.nx));
-    context.camera.smearing->at(state.attitude.mean, state.conditions.throughput, area.x0, smeared);
     const auto view = state.expected.view(strip, a);
+    int half = -1;
     for (int y = area.y0; y < area.y1(); ++y) {
+      if (nodes.half_of(y) != half) {
+        half = nodes.half_of(y);
+        const SmearedColumns& columns = (*context.camera.smearing)[static_cast<std::size_t>(half)];
+        columns.at(state.attitude.mean, state.conditions.throughput, area.x0, smeared);
+      }
       double* row = view.row(y).data();
       for (std::size_t i = 0; i < smeared.size(); ++i) row[i] += smeared[i];
     }
@@ -76,7 +88,7 @@ EffectNeed FrameTransferSmearing::is_needed(const SceneSummary& scene) const {
 
 void FrameTransferSmearing::prepare(CameraState& camera, const PrepareContext& context) const {
   prepare_columns(camera, context.scene);
-  camera.unsmeared = missing_from_above(context.scene, camera.layout);
+  camera.unsmeared = missing_from_behind(context.scene, camera.layout);
 }
 
 void FrameTransferSmearing::apply(ExposureState& state, const EffectContext& context, const Strip& strip) const {

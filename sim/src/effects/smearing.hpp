@@ -7,7 +7,8 @@ namespace astroid {
 
 /// Adds to every row of a column, overscan included, the light that falls on it while it is clocked through the column:
 /// the frame is read without a shutter, again and again, so each packet of charge passes every row once between two
-/// exposures, before or after its own. Prescan pixels never lie in a column and get none.
+/// exposures, before or after its own. Prescan pixels never lie in a column and get none. With four nodes each half of
+/// a column is read towards its own register, and is a column of its own.
 /// @source F30
 class OpenShutterSmearing final : public Effect {
  public:

@@ -9,6 +9,7 @@
 
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
+#include "effects/rolling_shutter.hpp"
 #include "effects/star_light.hpp"
 #include "star_lists.hpp"
 
@@ -34,6 +35,7 @@ void Stars::apply(ExposureState& state, const EffectContext& context, const Stri
   const auto number = std::ranges::lower_bound(strips, strip.begin, {}, &Strip::begin) - strips.begin();
   const auto& lists = context.camera.stars[static_cast<std::size_t>(number)];
   for (std::size_t a = 0; a < lists.size(); ++a) {
+    look_at_row(state, strip.areas[a].y0);
     const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(strip, a);
     for (const RenderedStar& star : lists[a])
       for_each_light(star, state, context.knobs.jitter,

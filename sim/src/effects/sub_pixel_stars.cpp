@@ -10,6 +10,7 @@
 #include "astroid/core/pixel_noise.hpp"
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
+#include "effects/rolling_shutter.hpp"
 #include "effects/star_light.hpp"
 #include "star_lists.hpp"
 
@@ -52,9 +53,11 @@ void sum_cells(const Rectangle& area, int n, const std::optional<IntraPixelState
     for (std::size_t i = 0; i < light.size(); ++i) light[i] *= static_cast<double>(count * count) / weights[i];
 }
 
-void add_to_areas(const Rectangle& tile, std::span<const double> light, ExposureState& state, const Strip& strip) {
+/// @param rows  of the tile that are added.
+void add_to_areas(const Rectangle& tile, const Rectangle& rows, std::span<const double> light, ExposureState& state,
+                  const Strip& strip) {
   for (std::size_t a = 0; a < strip.areas.size(); ++a) {
-    const Rectangle common = intersect(strip.areas[a], tile);
+    const Rectangle common = intersect(strip.areas[a], rows);
     if (common.empty()) continue;
     const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(strip, a);
     for (int y = common.y0; y < common.y1(); ++y) {
@@ -103,23 +106,30 @@ void SubPixelStars::apply(ExposureState& state, const EffectContext& context, co
   std::vector<StarLight> stars;
   std::vector<double> light;
   for (const SubPixelTile& tile : context.camera.tiles) {
-    stars.clear();
-    double brightest = 0.0;
-    for (const RenderedStar& star : tile.stars) {
-      brightest = std::max(brightest, star.electrons * state.conditions.throughput);
-      for_each_light(star, state, context.knobs.jitter, [&](const StarLight& one) { stars.push_back(one); });
+    // With a rolling shutter a tile is rendered for each band of rows in it, and the rows of the band are taken.
+    const int band = state.bands.attitude.empty() ? tile.area.y1() : state.bands.rows;
+    for (int y = tile.area.y0; y < tile.area.y1();) {
+      const int end = std::min(tile.area.y1(), (y / band + 1) * band);
+      look_at_row(state, y);
+      stars.clear();
+      double brightest = 0.0;
+      for (const RenderedStar& star : tile.stars) {
+        brightest = std::max(brightest, star.electrons * state.conditions.throughput);
+        for_each_light(star, state, context.knobs.jitter, [&](const StarLight& one) { stars.push_back(one); });
+      }
+      light.resize(tile.area.size());
+      const auto cells = tile.area.size() * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
+      if (n == 1) {
+        renderer->render_cells(tile.area, stars, state.sub_pixel, light);
+      } else {
+        state.scratch.resize(std::max(state.scratch.size(), cells));
+        renderer->render_cells(tile.area, stars, state.sub_pixel, std::span(state.scratch).first(cells));
+        sum_cells(tile.area, n, context.camera.intra_pixel, std::span(state.scratch).first(cells), light);
+      }
+      state.ringing.add(silence(light, renderer->predicted_error() * brightest));
+      add_to_areas(tile.area, {tile.area.x0, y, tile.area.nx, end - y}, light, state, strip);
+      y = end;
     }
-    light.resize(tile.area.size());
-    const auto cells = tile.area.size() * static_cast<std::size_t>(n) * static_cast<std::size_t>(n);
-    if (n == 1) {
-      renderer->render_cells(tile.area, stars, state.sub_pixel, light);
-    } else {
-      state.scratch.resize(std::max(state.scratch.size(), cells));
-      renderer->render_cells(tile.area, stars, state.sub_pixel, std::span(state.scratch).first(cells));
-      sum_cells(tile.area, n, context.camera.intra_pixel, std::span(state.scratch).first(cells), light);
-    }
-    state.ringing.add(silence(light, renderer->predicted_error() * brightest));
-    add_to_areas(tile.area, light, state, strip);
   }
 }
 

@@ -70,7 +70,7 @@ void TelegraphPixels::apply(ExposureState& state, const EffectContext& context, 
   const auto first = static_cast<std::size_t>(std::ranges::lower_bound(at, strip.begin) - at.begin());
   for (std::size_t i = first; i < at.size() && at[i] < strip.end; ++i)
     if (telegraph_is_high(context.stream, context.camera.cmos.telegraph[i], process,
-                          static_cast<std::uint32_t>(state.exposure)))
+                          static_cast<std::uint32_t>(state.number)))
       expected[at[i] - strip.begin] += jump;
 }
 

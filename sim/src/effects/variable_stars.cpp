@@ -8,6 +8,7 @@
 
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
+#include "effects/rolling_shutter.hpp"
 #include "effects/star_light.hpp"
 #include "star_lists.hpp"
 
@@ -32,7 +33,7 @@ void VariableStars::apply(ExposureState& state, const EffectContext& context, co
   const Scene& scene = context.scene;
   const PixelPsf& psf = recorded_psf(context);
   const double half = 0.5 * scene.mission().simulation.exposure_time.value();
-  const double middle = scene.mid_time(state.exposure).value();
+  const double middle = scene.mission_time(state.exposure).value();
   // The maps of a polynomial hold the constant stars; of these, the motion about the mean broadens the image.
   const JitterTreatment jitter =
       context.knobs.jitter == JitterTreatment::kPolynomial ? JitterTreatment::kBroadened : context.knobs.jitter;
@@ -41,10 +42,13 @@ void VariableStars::apply(ExposureState& state, const EffectContext& context, co
   const auto& lists = context.camera.variables[static_cast<std::size_t>(number)];
   for (std::size_t a = 0; a < lists.size(); ++a) {
     if (lists[a].empty()) continue;
+    look_at_row(state, strip.areas[a].y0);
     const ImageView<double, unit::ExpectedElectrons> view = state.expected.view(strip, a);
     for (RenderedStar star : lists[a]) {
       const Variability& variability = scene.variables()[static_cast<std::size_t>(star.variability)].variability;
-      star.electrons *= variability.mean(middle - half, middle + half);
+      // All of a star shines as in its own row: what others see of it is exposed a few line times off.
+      const double exposed = middle + star.position.y * state.line_time.value();
+      star.electrons *= variability.mean(exposed - half, exposed + half);
       for_each_light(star, state, jitter, [&](const StarLight& light) { psf.add_star(light, view, state.scratch); });
     }
   }

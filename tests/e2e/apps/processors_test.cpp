@@ -90,7 +90,8 @@ const Words kCcd = {"CCD/ChargeInjection/EveryRows=40",
 const Words kCmos = {"Simulation/Type=CMOS",        "CMOS/Reads=4",         "CMOS/ResetNoise=20",
                      "CMOS/ColumnNoise=3",          "CMOS/RowNoise=3",      "CMOS/GainSpread=1",
                      "CMOS/ReadoutNoiseSpread=0.2", "CMOS/Coupling/Side=1", "CMOS/Telegraph/Fraction=1",
-                     "CMOS/Telegraph/Current=5"};
+                     "CMOS/Telegraph/Current=5",    "CMOS/LineTime=0.1",    "CMOS/Persistence/Fraction=0.3 0.1",
+                     "CMOS/Persistence/Time=60 900"};
 
 constexpr std::size_t kImages = 3;
 const std::size_t kMaps = kEffects.size() - 1;  // jitter has none

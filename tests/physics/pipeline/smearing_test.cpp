@@ -159,6 +159,21 @@ TEST(Smearing, IsCorrectedWithALocalBackground) {
   EXPECT_NEAR(corrected.expected, 1.0, 1e-12);
 }
 
+TEST(Smearing, OfFourNodesIsThatOfEachHalf) {
+  Mission mission = bright_neighbours();
+  smear(mission);
+  mission.ccd.nodes.count = 4;
+  // Half of the bright stars lie beyond the middle, at rows above 2255, and smear into the other half of the column.
+  const Measured smeared = measure(mission);
+  print("smeared, four nodes", smeared);
+  expect_as_predicted(smeared);
+  mission.photometry.calibration.smearing = true;
+  const Measured corrected = measure(mission);
+  print("corrected, four nodes", corrected);
+  expect_as_predicted(corrected);
+  EXPECT_EQ(corrected.expected, 1.0);
+}
+
 TEST(Bias, ThatDriftsIsMeasuredInThePrescan) {
   Mission mission = bright_neighbours();
   mission.ccd.electronics.bias_drift = 5.0;

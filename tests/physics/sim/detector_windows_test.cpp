@@ -130,6 +130,21 @@ INSTANTIATE_TEST_SUITE_P(
                m.ccd.cti.trap_cross_section = {2.46e-20, 2.45e-23};
                m.ccd.cti.trap_release_time = {2.37e-4, 0.14};
              }},
+        Case{"SmearingThroughFourNodes",
+             [](Mission& m) {
+               m.ccd.smearing = {
+                   .model = SmearingModel::kFrameTransfer, .time = Seconds(4.0), .clear_time = Seconds(1.0)};
+               m.ccd.nodes.count = 4;
+             }},
+        Case{"PersistenceAndRollingShutter",
+             [](Mission& m) {
+               m.simulation.type = DetectorType::kCmos;
+               m.ccd.reference = {};
+               m.cmos.persistence = {.fraction = {0.01}, .time = {100.0}};
+               m.cmos.line_time = Seconds(0.1);
+               m.satellite.jitter.model = JitterModel::kRedNoise;
+               m.satellite.jitter.yaw = m.satellite.jitter.pitch = Arcseconds(1.0);
+             }},
         Case{"Everything",
              [](Mission& m) {
                m.ccd.flat_field.rms = 0.01;

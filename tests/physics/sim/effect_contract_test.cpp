@@ -183,6 +183,14 @@ std::vector<test::EffectScene> scenes() {
           },
           [](Mission& m) { m.ccd.smearing.model = SmearingModel::kNone; }),
       scene(
+          "open-shutter-smearing",
+          [](Mission& m) {
+            m.ccd.smearing = {.model = SmearingModel::kOpenShutter, .time = Seconds(4.0)};
+            m.ccd.reference = {.prescan = 10, .serial_overscan = 5, .parallel_overscan = 20};
+            m.ccd.nodes.count = 4;
+          },
+          [](Mission& m) { m.ccd.smearing.model = SmearingModel::kNone; }),
+      scene(
           "frame-transfer-smearing",
           [](Mission& m) {
             m.ccd.smearing = {.model = SmearingModel::kFrameTransfer, .time = Seconds(4.0), .clear_time = Seconds(1.0)};
@@ -251,6 +259,23 @@ std::vector<test::EffectScene> scenes() {
           },
           [](Mission& m) { m.cmos.telegraph_fraction = 0.0; }),
       cmos_scene(
+          "persistence",
+          [](Mission& m) {
+            m.cmos.persistence = {.fraction = {0.01, 0.005}, .time = {40.0, 300.0}};
+            m.satellite.jitter.model = JitterModel::kRedNoise;
+            m.satellite.jitter.yaw = m.satellite.jitter.pitch = Arcseconds(0.3);
+          },
+          [](Mission& m) { m.cmos.persistence = {}; }),
+      cmos_scene(
+          "rolling-shutter",
+          [](Mission& m) {
+            m.cmos.line_time = Seconds(0.1);
+            m.satellite.jitter.model = JitterModel::kRedNoise;
+            m.satellite.jitter.yaw = m.satellite.jitter.pitch = Arcseconds(0.9);
+            m.satellite.jitter.timescale = Seconds(30.0);
+          },
+          [](Mission& m) { m.cmos.line_time = Seconds(0.0); }),
+      cmos_scene(
           "pixel-saturation", [](Mission& m) { m.ccd.full_well = Electrons(100000.0); },
           [](Mission& m) { m.ccd.full_well = Electrons(1e12); }),
       cmos_scene(
@@ -301,6 +326,8 @@ INSTANTIATE_TEST_SUITE_P(Effects, EffectContract, testing::ValuesIn(scenes()),
                            std::string name = parameter.param.effect;
                            std::erase(name, '-');
                            if (parameter.param.mission.simulation.type == DetectorType::kCmos) name += "OfCmos";
+                           if (parameter.param.mission.ccd.nodes.count > 1)
+                             name += "Of" + std::to_string(parameter.param.mission.ccd.nodes.count) + "Nodes";
                            return name;
                          });
 

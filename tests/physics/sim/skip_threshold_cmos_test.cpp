@@ -68,6 +68,9 @@ TEST_P(CmosSkippedBelowThreshold, IsHarmless) {
 INSTANTIATE_TEST_SUITE_P(
     Effects, CmosSkippedBelowThreshold,
     testing::Values(SkipCase{"inter-pixel-capacitance", [](Mission& m, double v) { m.cmos.coupling = v; }, 0.1},
+                    SkipCase{"persistence",
+                             [](Mission& m, double v) { m.cmos.persistence = {.fraction = {v}, .time = {100.0}}; },
+                             0.1},
                     SkipCase{"pixel-gain", [](Mission& m, double v) { m.cmos.gain_rms = v; }, 0.1},
                     SkipCase{"pixel-offset", [](Mission& m, double v) { m.cmos.offset_rms = Adu(v); }, 1000.0},
                     SkipCase{"telegraph-pixels",

@@ -170,6 +170,72 @@ TEST(FrameTransferSmearing, WeighsRowsByTheTransferThatPassesThem) {
   }
 }
 
+/// Rows of one half with four nodes, and the overscan region that goes with it.
+struct Half {
+  int y0, y1;
+  std::size_t overscan;
+};
+constexpr Half kLower{0, 41, 4};  // 81 rows: the middle one belongs to the lower half
+constexpr Half kUpper{41, 81, 3};
+
+Mission four_nodes(SmearingModel model) {
+  Mission mission = smeared_mission(model);
+  mission.ccd.rows = 81;
+  mission.ccd.nodes.count = 4;
+  return mission;
+}
+
+TEST(OpenShutterSmearing, OfFourNodesIsThatOfEachHalf) {
+  const Expectation sharp = expectation(four_nodes(SmearingModel::kNone));
+  const Expectation smeared = expectation(four_nodes(SmearingModel::kOpenShutter));
+  ASSERT_TRUE(smeared.plan->runs("open-shutter-smearing"));
+  ASSERT_EQ(smeared.regions().size(), 5U);  // the frame, prescan, serial overscan, overscan above and below
+  EXPECT_EQ(smeared.regions()[3], (Rectangle{0, 81, kColumns, 12}));
+  EXPECT_EQ(smeared.regions()[4], (Rectangle{0, -12, kColumns, 12}));
+  double difference = 0.0;
+  for (int x = 0; x < kColumns; ++x) {
+    double of_lower = 0.0;
+    for (const Half& half : {kLower, kUpper}) {
+      double light = 0.0;
+      for (int y = half.y0; y < half.y1; ++y) light += sharp.at(0, x, y);
+      const double expected = light * 4.0 / 21.0 / (half.y1 - half.y0);
+      for (int y = half.y0; y < half.y1; ++y)
+        ASSERT_NEAR(smeared.at(0, x, y) - sharp.at(0, x, y), expected, tolerance(expected)) << x << "," << y;
+      const Rectangle& overscan = smeared.regions()[half.overscan];
+      for (int y = overscan.y0; y < overscan.y1(); ++y)
+        ASSERT_NEAR(smeared.at(half.overscan, x, y), expected, tolerance(expected)) << x << "," << y;
+      if (half.y0 == 0) of_lower = expected;
+      difference = std::max(difference, std::fabs(expected - of_lower));
+    }
+  }
+  EXPECT_GT(difference, 1000.0) << "the halves are to differ";
+}
+
+TEST(FrameTransferSmearing, OfFourNodesWeighsRowsByTheWayToTheirRegister) {
+  const Expectation sharp = expectation(four_nodes(SmearingModel::kNone));
+  for (const double clear : {0.0, 1.5, 4.0}) {
+    Mission mission = four_nodes(SmearingModel::kFrameTransfer);
+    mission.ccd.smearing.clear_time = Seconds(clear);
+    const Expectation smeared = expectation(mission);
+    for (int x = 0; x < kColumns; ++x)
+      for (const Half& half : {kLower, kUpper}) {
+        const int rows = half.y1 - half.y0;
+        double all = 0.0;
+        for (int y = half.y0; y < half.y1; ++y) all += sharp.at(0, x, y);
+        double before = 0.0;  // of the rows that lie between a row and its register
+        for (int number = 0; number < rows; ++number) {
+          const int y = half.y0 == 0 ? number : half.y1 - 1 - number;
+          const double own = sharp.at(0, x, y);
+          const double passed = before + 0.5 * own;
+          const double expected = (4.0 * passed + clear * (all - passed)) / 21.0 / rows;
+          ASSERT_NEAR(smeared.at(0, x, y) - sharp.at(0, x, y), expected, tolerance(all * 4.0 / 21.0 / rows))
+              << x << "," << y;
+          before += own;
+        }
+      }
+  }
+}
+
 // Hard case N34: columns without light, rows without light.
 TEST(Smearing, OfNothingIsNothing) {
   Mission mission = smeared_mission(SmearingModel::kOpenShutter);

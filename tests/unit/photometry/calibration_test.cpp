@@ -85,6 +85,26 @@ TEST(FrameCalibration, SubtractsTheLevelOfEachColumn) {
       frame, [](const Rectangle& area, int, int y) { return kBias + 100.0 + 7.0 * (y - area.y0); }, 1e-3);
 }
 
+TEST(FrameCalibration, SubtractsTheLevelOfEachHalfOfAColumn) {
+  // A window across the middle; overscan of the lower half below, of the upper half above.
+  const auto layout = std::make_shared<const PixelLayout>(std::vector<Rectangle>{
+      {2, 12, 6, 6}, {12, 20, 6, 6}, {2, 30, 6, 4}, {2, -4, 6, 4}, {12, 30, 6, 4}, {12, -4, 6, 4}});
+  CalibrationModel model = plain_model();
+  model.subtract_smearing = true;
+  model.nodes = 4;
+  const FrameCalibration calibration(*layout, model);
+  EXPECT_EQ(calibration.overscan_rows(), 4);
+  const auto smeared = [](int x, int y) { return y >= 15 ? 10.0 * x : 300.0 - 7.0 * x; };
+  Frame frame = frame_with(layout, [&](int x, int y, double) {
+    const bool light = y >= 0 && y < kDetector.ny;
+    return kBias + smeared(x, y) + (light ? 100.0 + y : 0.0);
+  });
+  FrameCalibration::Scratch scratch;
+  calibration.apply(frame, scratch);
+  expect_pixels(
+      frame, [](const Rectangle&, int, int y) { return kBias + 100.0 + y; }, 1e-3);
+}
+
 TEST(FrameCalibration, MeasuresTheBiasInThePrescan) {
   const auto layout = windows();
   CalibrationModel model = plain_model();

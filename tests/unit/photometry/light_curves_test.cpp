@@ -8,8 +8,10 @@
 #include <thread>
 #include <tuple>
 #include <utility>
+#include <vector>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/fits_reader.hpp"
 #include "astroid/test/temporary_folder.hpp"
 
 namespace astroid {
@@ -287,6 +289,25 @@ TEST(LightCurves, CanBeEmpty) {
   LightCurveWriter second(no_exposures, header_of(0, 1), three_stars());
   second.commit();
   EXPECT_TRUE(read_light_curve(no_exposures, "x", 1).flux.empty());
+}
+
+TEST(LightCurves, OfARollingShutterHaveTheTimeOfTheRow) {
+  const test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "lightcurves.fits").string();
+  LightCurveHeader header = header_of(2, 1);
+  header.line_time = 0.25;
+  LightCurveWriter writer(path, header, three_stars());
+  write(writer, 1, 0, 2);
+  writer.commit();
+  const LightCurveHeader read = read_light_curve_contents(path).header;
+  EXPECT_EQ(read.line_time, 0.25);
+  const std::string one = (folder.path() / "one.fits").string();
+  export_light_curve(one, read_light_curve(path, "Gaia DR3 1", 1), read);
+  const FitsReader fits(one);
+  const std::vector<double> time = fits.read_numbers(2, 0);
+  ASSERT_EQ(time.size(), 2U);
+  for (std::int64_t k = 0; k < 2; ++k)  // the star is at y = 2.5
+    EXPECT_NEAR((time[static_cast<std::size_t>(k)] - mid_exposure_bjd(header, k)) * 86400.0, 0.625, 1e-6);
 }
 
 TEST(LightCurves, SayWhatIsWrongWithARequest) {

@@ -9,6 +9,7 @@
 #include "astroid/core/mission/simulation.hpp"
 #include "astroid/core/mission/stellar_field.hpp"
 #include "astroid/core/mission/telescope.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
@@ -26,5 +27,16 @@ struct Mission {
 
   friend bool operator==(const Mission&, const Mission&) = default;
 };
+
+/// Time from the start of the mission (quarter 0) to that of the run. What is periodic, ages or varies goes on from
+/// quarter to quarter.
+inline Seconds quarter_start(const Mission& mission) {
+  return Seconds(static_cast<double>(mission.simulation.quarter) * mission.satellite.quarter_days * kSecondsPerDay);
+}
+
+/// By which a row is exposed later than the one below it: of a CMOS detector with a rolling shutter.
+inline Seconds line_time(const Mission& mission) {
+  return mission.simulation.type == DetectorType::kCmos ? mission.cmos.line_time : Seconds(0.0);
+}
 
 }  // namespace astroid

@@ -8,7 +8,8 @@ namespace astroid {
 inline constexpr int kMostNodes = 4;
 
 /// Detectors are read through one node, two (left and right half of each row) or four (quadrants). Node numbers count
-/// from 0: left, right, upper left, upper right. Reference pixels go through the node of the nearest half.
+/// from 0: left, right, upper left, upper right. Reference pixels go through the node of the nearest half. With four
+/// nodes the rows of the upper half are moved upwards, to a register above the last row.
 ///
 /// @throws nothing; `nodes` other than 2 and 4 count as one node.
 class ReadoutNodes {
@@ -24,6 +25,19 @@ class ReadoutNodes {
   /// First column of the right half; beyond every column where there is one node a row.
   [[nodiscard]] int middle_x() const { return middle_x_; }
   [[nodiscard]] int middle_y() const { return middle_y_; }
+
+  /// Whether the two halves of a column are read in opposite directions.
+  [[nodiscard]] bool splits_columns() const { return nodes_ == 4; }
+  /// Parts of a column that are read in one direction: 1 or 2, counted from below.
+  [[nodiscard]] int halves() const { return splits_columns() ? 2 : 1; }
+  /// Which of them a row belongs to; overscan rows to the nearest.
+  [[nodiscard]] int half_of(int y) const { return splits_columns() && y >= middle_y_ ? 1 : 0; }
+  /// Its light-sensitive pixels. @param detector  as given to the constructor.
+  [[nodiscard]] Rectangle half(const Rectangle& detector, int number) const {
+    if (!splits_columns()) return detector;
+    return number == 0 ? Rectangle{detector.x0, detector.y0, detector.nx, middle_y_ - detector.y0}
+                       : Rectangle{detector.x0, middle_y_, detector.nx, detector.y1() - middle_y_};
+  }
 
  private:
   int middle_x_;

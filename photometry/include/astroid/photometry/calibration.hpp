@@ -33,7 +33,7 @@ struct CalibrationModel {
 ///
 /// A calibrated frame still holds the believed bias, so estimators need not know what was done. Flags are not changed.
 /// Reference pixels are those of the layout beside the detector: prescan at x < 0 (and, with two nodes a row, at
-/// x >= columns for the other side), overscan at y >= rows.
+/// x >= columns for the other side), overscan at y >= rows (and, with four nodes, at y < 0 for the lower half).
 class FrameCalibration {
  public:
   /// Memory that a worker lends; what it holds between calls means nothing.
@@ -62,6 +62,7 @@ class FrameCalibration {
  private:
   struct Columns {
     std::size_t region;  // light-sensitive
+    int y0, y1;          // its rows that are read in one direction
     std::size_t level;   // where the levels of its columns begin
   };
   [[nodiscard]] bool is_light_sensitive(const Rectangle& region) const;

@@ -53,11 +53,15 @@ struct FieldStar {
 struct ColumnSmearing {
   int first_column = 0;
   std::vector<double> electrons;  ///< e- per pixel and exposure, of first_column and those after it; empty: none
+  std::vector<double> upper;  ///< the same in rows from `upper_row` on, where these are read upwards; empty: as below
+  int upper_row = 0;
   /// Overscan rows whose mean is subtracted from every pixel of their column; 0: what is smeared stays in the flux.
   int overscan_rows = 0;
-  [[nodiscard]] double at(int column) const {
+  [[nodiscard]] bool is_upper(int row) const { return !upper.empty() && row >= upper_row; }
+  [[nodiscard]] double at(int column, int row) const {
+    const std::vector<double>& columns = is_upper(row) ? upper : electrons;
     const auto i = static_cast<std::int64_t>(column) - first_column;
-    return i >= 0 && i < std::ssize(electrons) ? electrons[static_cast<std::size_t>(i)] : 0.0;
+    return i >= 0 && i < std::ssize(columns) ? columns[static_cast<std::size_t>(i)] : 0.0;
   }
 };
 

@@ -56,6 +56,7 @@ struct LightCurveHeader {
   std::vector<std::string> history;  ///< the plan, line by line
   std::vector<int> group{};          ///< of each camera, from 0; empty: all cameras are alike
   std::vector<double> stagger{};     ///< s, of each camera after the start of a cycle; empty: none
+  double line_time = 0.0;            ///< s, by which a row is exposed later than the one below; 0: all at once
 };
 
 /// Mid-exposure of exposure k, seconds since the start of the first: exact in k, never summed up.

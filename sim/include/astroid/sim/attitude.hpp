@@ -51,12 +51,26 @@ class AttitudeModel {
   [[nodiscard]] virtual std::string description() const = 0;
 };
 
+/// Calls `visit` for exposures 0 … count-1 with attitudes at the midpoints of `steps` equal parts of windows of the
+/// length of an exposure that begin `offsets` later than it does: shape (window, step). For rows, or cameras, that are
+/// exposed at their own times.
+///
+/// A longer series has the shorter one as its beginning, bit for bit.
+/// @param gapless     a model whose exposures fill the cycle, so that it knows the attitude at any time.
+/// @param simulation  of the exposures; offsets are from 0 to a cycle.
+/// @accuracy  An attitude is that at the midpoint of the nearest of equal parts of the cycle, none longer than a step:
+///            at most half a step away.
+void for_each_exposure_at(const AttitudeModel& gapless, const SimulationSettings& simulation,
+                          std::span<const Seconds> offsets, std::int64_t count, int steps,
+                          const std::function<void(std::span<const Attitude>)>& visit);
+
 /// The attitude of every exposure of a run, computed once and shared by all cameras.
 struct AttitudeSeries {
-  std::vector<AttitudeMoments> moments;  ///< [exposure]; empty when nothing moves
-  std::vector<Attitude> samples;         ///< [exposure][step], only where exposures are rendered step by step
-  std::vector<float> weights;            ///< [exposure][map], only where images are a polynomial in the attitude
+  std::vector<AttitudeMoments> moments;  ///< [exposure][band]; empty when nothing moves
+  std::vector<Attitude> samples;         ///< [exposure][band][step], only where exposures are rendered step by step
+  std::vector<float> weights;            ///< [exposure][band][map], only where images are a polynomial in the attitude
   int steps = 1;
+  int bands = 1;      ///< of rows that are exposed one after the other
   Attitude farthest;  ///< the largest of each axis, in absolute value
 };
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "astroid/core/image.hpp"
+#include "astroid/sim/persistence.hpp"
 #include "astroid/sim/ramp_fit.hpp"
 #include "astroid/sim/strip.hpp"
 #include "astroid/sim/telegraph.hpp"
@@ -15,12 +16,13 @@ namespace astroid {
 
 /// Fixed for a camera; a plane is empty where its effect is off.
 struct CmosPatterns {
-  Plane<float, unit::Relative> gain;           ///< signal of a pixel per electron, mean 1
-  Plane<float, unit::Relative> readout_noise;  ///< of a pixel relative to the detector's, root mean square 1
-  Plane<float, unit::Adu> offset;              ///< of a pixel, mean 0
-  std::vector<TelegraphPixel> telegraph;       ///< in the order of the layout
-  std::vector<std::size_t> telegraph_at;       ///< where each is in the buffer
-  std::shared_ptr<const RampLadder> ladder;    ///< null where an exposure is read once
+  Plane<float, unit::Relative> gain;                     ///< signal of a pixel per electron, mean 1
+  Plane<float, unit::Relative> readout_noise;            ///< of a pixel relative to the detector's, root mean square 1
+  Plane<float, unit::Adu> offset;                        ///< of a pixel, mean 0
+  std::vector<TelegraphPixel> telegraph;                 ///< in the order of the layout
+  std::vector<std::size_t> telegraph_at;                 ///< where each is in the buffer
+  std::shared_ptr<const RampLadder> ladder;              ///< null where an exposure is read once
+  std::shared_ptr<const PersistenceKernel> persistence;  ///< null where the effect is off
 };
 
 /// The ramps of one exposure.

@@ -72,6 +72,7 @@ enum class ImageRole : std::uint8_t {
   kVaryingLight,  ///< adds light that differs from exposure to exposure
   kResponse,      ///< multiplies or moves light, linearly, the same in every exposure
   kOffset,        ///< adds what is not light, the same in every exposure
+  kMemory,        ///< comes after all others, and adds what the expected images of earlier exposures left behind
 };
 
 /// An effect's data about itself.
@@ -98,6 +99,9 @@ struct EffectNeed {
       0.0;  ///< of any target's flux at the longest reported time bin with all cameras, relative to its variance
   /// How long the conditions it sets may be taken as constant without moving a flux beyond its tolerance.
   Seconds steady{std::numeric_limits<double>::infinity()};
+  /// Where all that those conditions do is to move stars smoothly: how, per second. The image may then be a polynomial
+  /// in time, and they need not be constant.
+  SlowMotion motion{};
 };
 
 /// What rendering a star takes.
@@ -133,26 +137,44 @@ struct CameraState {
   std::vector<SubPixelTile> tiles;                                ///< instead of `stars`, of the sub-pixel renderer
   std::optional<IntraPixelState> intra_pixel;                     ///< nothing when the effect is off
   Plane<float, unit::Relative> vignetting;                        ///< 1 on the axis; empty when the effect is off
-  Plane<float, unit::Relative> prnu;                ///< pixel response, mean 1; empty when the effect is off
-  Plane<float, unit::Relative> flat_field;          ///< its large-scale part, mean 1; empty when the effect is off
-  Plane<float, unit::ExpectedElectrons> dark;       ///< dark electrons per exposure; empty when the effect is off
-  std::shared_ptr<const SmearedColumns> smearing;   ///< of the columns of the layout
+  Plane<float, unit::Relative> prnu;           ///< pixel response, mean 1; empty when the effect is off
+  Plane<float, unit::Relative> flat_field;     ///< its large-scale part, mean 1; empty when the effect is off
+  Plane<float, unit::ExpectedElectrons> dark;  ///< dark electrons per exposure; empty when the effect is off
+  std::shared_ptr<const std::vector<SmearedColumns>> smearing;  ///< [half of the rows]: of the columns of the layout
   Plane<float, unit::ExpectedElectrons> unsmeared;  ///< what frame transfer smears less than that; empty: nothing
   std::vector<std::uint32_t> dead_pixels;           ///< places in the buffer of the layout, rising
   std::vector<std::uint32_t> hot_pixels;
+  std::vector<double> hot_electrons;         ///< of each of them, per exposure
   std::vector<std::size_t> cross_talk_from;  ///< [delivered region][mirror]: the computed region that it hears
   CmosPatterns cmos;                         ///< of a CMOS detector
+};
+
+/// Where bands of rows look that are exposed one after the other. All empty where all rows are exposed at once.
+struct RowBands {
+  int rows = 0;                                 ///< of a band; the first begins with row 0
+  std::span<const AttitudeMoments> attitude{};  ///< of each band while it is exposed
+  std::span<const Attitude> steps{};            ///< [band][step], where the plan wants them
+};
+
+/// What the expected image of an earlier exposure adds to this one.
+struct PastImage {
+  std::shared_ptr<const Plane<float, unit::ExpectedElectrons>> electrons;  ///< none beyond the full well
+  double share = 0.0;                                                      ///< of it
 };
 
 /// Everything that belongs to one exposure of one camera. One worker owns it.
 struct ExposureState {
   int camera = 0;
   std::int64_t exposure = 0;
-  int read = 0;                              ///< non-destructive read at work, from 0
-  Conditions conditions;                     ///< that change slowly
-  AttitudeMoments attitude;                  ///< of the exposure; zero when nothing moves
-  std::span<const Attitude> attitude_steps;  ///< of the exposure, where the plan wants them
-  MovingImage::Exposure moving;              ///< its noiseless image, where that is recalled from fixed maps
+  std::int64_t number = 0;                    ///< of the exposure since the start of the mission: address of its noise
+  int read = 0;                               ///< non-destructive read at work, from 0
+  Conditions conditions;                      ///< that change slowly
+  AttitudeMoments attitude;                   ///< of the exposure; zero when nothing moves
+  std::span<const Attitude> attitude_steps;   ///< of the exposure, where the plan wants them
+  RowBands bands;                             ///< for which both are otherwise, with a rolling shutter
+  Seconds line_time{0.0};                     ///< by which a row is exposed later than the one below it
+  std::vector<MovingImage::Exposure> moving;  ///< its noiseless image (of each band), where recalled from fixed maps
+  std::vector<PastImage> past;                ///< with what of them is released in this exposure
   std::shared_ptr<const Plane<double, unit::ExpectedElectrons>> recalled;  ///< the same, where exposures share it
   bool still = false;                                                      ///< whether nothing is added to that
   StripPlane<double, unit::ExpectedElectrons> expected;

@@ -19,6 +19,7 @@
 #include "astroid/sim/aberration.hpp"
 #include "astroid/sim/attitude.hpp"
 #include "astroid/sim/attitude_trend.hpp"
+#include "astroid/sim/bad_pixel_list.hpp"
 #include "astroid/sim/optics.hpp"
 #include "astroid/sim/renderer.hpp"
 #include "astroid/sim/scene_summary.hpp"
@@ -81,18 +82,28 @@ class Scene {
   [[nodiscard]] const SubPixelRenderer* sub_pixel_renderer() const { return sub_pixel_renderer_.get(); }
   [[nodiscard]] const std::optional<SkyProjection>& projection() const { return projection_; }
   [[nodiscard]] const SceneSummary& summary() const { return summary_; }
+  /// Bad pixels that are known by their place.
+  [[nodiscard]] const BadPixelList& bad_pixels() const { return bad_pixels_; }
   /// How stars vary.
   [[nodiscard]] std::span<const VariableStar> variables() const { return variables_; }
   /// With everything that moves the line of sight.
   [[nodiscard]] const AttitudeModel& attitude() const { return *attitude_; }
   /// With some of it only.
   [[nodiscard]] std::shared_ptr<const AttitudeModel> attitude(const AttitudeParts& parts) const;
+  /// The same at any time: its exposures fill the cycle. Of jitter from a model it is another realisation.
+  [[nodiscard]] std::shared_ptr<const AttitudeModel> gapless_attitude(const AttitudeParts& parts) const;
   /// How far drift and re-pointing lead, and how fast.
   [[nodiscard]] const AttitudeTrend& attitude_trend() const { return trend_; }
   /// The zodiacal sky at a corner of the detector: lower left, lower right, upper left, upper right.
   /// @param time  since the start of the run
   [[nodiscard]] ElectronsPerSecond sky_at_corner(std::size_t corner, Seconds time) const;
+  /// Middle of an exposure since the start of the run.
   [[nodiscard]] Seconds mid_time(std::int64_t exposure) const;
+  /// The same since the start of the mission: quarters before that of the run count.
+  [[nodiscard]] Seconds mission_time(std::int64_t exposure) const;
+  /// Number of an exposure, counted from the start of the mission: what the noise of exposures is addressed by, so that
+  /// quarters do not repeat each other's.
+  [[nodiscard]] std::int64_t mission_number(std::int64_t exposure) const;
   /// What was assumed or left out while the scene was built, for the report.
   [[nodiscard]] std::span<const std::string> notes() const { return notes_; }
 
@@ -107,6 +118,7 @@ class Scene {
   std::vector<Ghost> ghosts_;
   std::vector<std::size_t> targets_;
   std::vector<VariableStar> variables_;
+  BadPixelList bad_pixels_;
   std::shared_ptr<const PixelLayout> layout_;
   RendererChoice renderer_;
   std::shared_ptr<const PixelPsf> optical_psf_;

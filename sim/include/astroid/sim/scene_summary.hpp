@@ -47,9 +47,13 @@ struct SceneSummary {
   double proper_motion_px = 0.0;             ///< the farthest that one was moved to the epoch of the run
   double epoch = 2000.0;                     ///< of the middle of the run, Julian year
   double drift_px = 0.0;                     ///< largest displacement of any star by drift over the run
+  double drift_px_per_second = 0.0;          ///< the fastest that drift moves any star
   double repointing_px = 0.0;                ///< and by the errors of re-pointing
   double aberration_px = 0.0;                ///< and by aberration
   double aberration_px_per_second = 0.0;     ///< the fastest that aberration moves any star
+  std::size_t listed_dead = 0;               ///< pixels, by a file
+  std::size_t listed_hot = 0;
+  double hottest = 0.0;  ///< e- per exposure, of the listed hot pixels
   PsfSensitivity psf;
   double accuracy = 1e-6;  ///< the accuracy asked for, relative
 

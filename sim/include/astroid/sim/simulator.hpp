@@ -55,6 +55,7 @@ class Simulator {
 
  private:
   using StillImages = RecentImages<std::int64_t, Plane<double, unit::ExpectedElectrons>>;
+  using PastImages = RecentImages<std::int64_t, Plane<float, unit::ExpectedElectrons>>;
   /// The noiseless image.
   enum class Source : std::uint8_t {
     kRender,  ///< effect by effect
@@ -85,6 +86,9 @@ class Simulator {
   [[nodiscard]] std::vector<Step> expected_steps(Source source) const;
   [[nodiscard]] Source source() const;
   void begin(std::int64_t exposure, ExposureState& state) const;
+  void begin_light(std::int64_t exposure, ExposureState& state) const;  // all but what earlier exposures left
+  [[nodiscard]] std::shared_ptr<const Plane<float, unit::ExpectedElectrons>> past_image(std::int64_t exposure) const;
+  void recall_moving(const ExposureState& state, const Strip& strip, std::span<double> expected) const;
   void run(const std::vector<Stage>& stages, ExposureState& state, const StepObserver& observer = {}) const;
   void run(const Stage& stage, ExposureState& state, const StepObserver& observer) const;
   void take_expected(ExposureState& state, const Strip& strip) const;
@@ -104,10 +108,12 @@ class Simulator {
   Strip exposed_;
   std::size_t longest_strip_ = 0;
   bool varies_ = false;                        // light differs from exposure to exposure
+  bool remembers_ = false;                     // what earlier exposures left is added
   Conditions constant_;                        // where conditions do not change
   FrameHeader header_;                         // what exposures have in common
   std::shared_ptr<const StillImages> still_;   // the noiseless images, if nothing moves, one for each epoch
   std::shared_ptr<const MovingImage> moving_;  // if little does
+  std::shared_ptr<const PastImages> past_;     // what traps saw in earlier exposures, if they remember
   std::vector<Stage> stages_;                  // of an exposure
 };
 

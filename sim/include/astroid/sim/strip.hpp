@@ -35,7 +35,8 @@ Strip exposed_strip(const PixelLayout& layout);
 inline constexpr std::size_t kStripPixels = 16384;
 
 /// Strips of about `pixels` pixels, at least one row each, in the order of the buffer.
-std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels);
+/// @param band_rows  areas do not reach across multiples of so many rows of the detector; 0: wherever they like.
+std::vector<Strip> make_strips(const PixelLayout& layout, std::size_t pixels, int band_rows = 0);
 
 /// A plane of which, as a rule, only the strip at work exists: what one effect hands to the next need not travel
 /// through memory. Where an effect or an observer wants all of it, it is a whole plane.

@@ -123,6 +123,7 @@ struct BadPixelSettings {
   double dead = 0.0;  ///< fraction that sees no light
   double hot = 0.0;   ///< fraction with a large dark current
   ElectronsPerSecond hot_current{1000.0};
+  std::string file{};  ///< absolute path of a list or mask of others, the same in all cameras; empty: none
 
   friend bool operator==(const BadPixelSettings&, const BadPixelSettings&) = default;
 };
@@ -159,6 +160,14 @@ struct CcdSettings {
   friend bool operator==(const CcdSettings&, const CcdSettings&) = default;
 };
 
+/// Charge that traps take from an exposure and release in the following ones, one share for each kind of trap.
+struct PersistenceSettings {
+  std::vector<double> fraction;  ///< of the charge of an exposure that is in traps at its end; empty: none
+  std::vector<double> time;      ///< s, mean time after which each kind releases it
+
+  friend bool operator==(const PersistenceSettings&, const PersistenceSettings&) = default;
+};
+
 /// What only a CMOS detector has; CcdSettings holds the rest.
 struct CmosSettings {
   /// Reads of an exposure. 1: at its end, after a reset at its beginning. More: non-destructive, evenly spaced, the
@@ -176,6 +185,8 @@ struct CmosSettings {
   double telegraph_fraction = 0.0;  ///< of the pixels
   ElectronsPerSecond telegraph_current{0.0};  ///< dark current that their high state has more than their low one
   Seconds telegraph_low{1000.0}, telegraph_high{1000.0};  ///< mean stay in each state
+  PersistenceSettings persistence;
+  Seconds line_time{0.0};  ///< by which each row begins and ends its exposure later than the one below; 0: all at once
 
   friend bool operator==(const CmosSettings&, const CmosSettings&) = default;
 };

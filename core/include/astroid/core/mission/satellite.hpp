@@ -28,9 +28,10 @@ struct DriftSettings {
   friend bool operator==(const DriftSettings&, const DriftSettings&) = default;
 };
 
-/// Rms of the pointing error of each quarter but the first.
+/// Rms of the pointing error of each quarter but the first, and the turn between two quarters.
 struct RepointingSettings {
   Arcseconds yaw, pitch, roll;
+  Degrees turn;  ///< about the optical axis, by which each quarter is rolled further than the one before
 
   friend bool operator==(const RepointingSettings&, const RepointingSettings&) = default;
 };
