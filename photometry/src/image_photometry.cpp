@@ -275,6 +275,7 @@ class ImageMeasurer {
         source.flux_err /= enclosed;
       }
     }
+    source.flux_err = std::hypot(source.flux_err, settings_.psf_error * source.flux);
     if (source.flux_err > 0.0) source.snr = source.flux / source.flux_err;
     const auto magnitude = magnitude_of(Electrons(source.flux) / frame_.header.exposure_time, settings_.zero_point);
     if (magnitude) {

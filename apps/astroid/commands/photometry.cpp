@@ -220,7 +220,7 @@ class PhotometryRun {
                                                  PhotometryRecord& record) {
     ImagePhotometrySettings settings = settings_;
     settings.map = map;
-    if (options_.psf == kMeasured) settings.psf = measured_psf(frame, record);
+    if (options_.psf == kMeasured) use_measured_psf(frame, settings, record);
     record.why = "it was asked for";
     record.method = options_.method;
     std::optional<FoundStars> found;
@@ -259,11 +259,13 @@ class PhotometryRun {
     return std::move(found->sources);
   }
 
-  static std::shared_ptr<const PixelPsf> measured_psf(const Frame& frame, PhotometryRecord& record) {
+  static void use_measured_psf(const Frame& frame, ImagePhotometrySettings& settings, PhotometryRecord& record) {
     MeasuredPsf measured = measure_psf(frame);
-    record.notes.push_back(fmt::format("The PSF was measured from {} stars, chi2 {:.3f} a pixel: {}.", measured.stars,
-                                       measured.chi2, make_effective_psf(measured.psf)->description()));
-    return make_effective_psf(std::move(measured.psf));
+    settings.psf_error = measured.flux_error;
+    settings.psf = make_effective_psf(std::move(measured.psf));
+    record.notes.push_back(
+        fmt::format("The PSF was measured from {} stars: {}; chi2 {:.3f} a pixel, {:.2g} % of a flux are its doubt, {:.2f} of the prior freedom.",
+                    measured.stars, settings.psf->description(), measured.chi2, 100.0 * measured.flux_error, measured.from_prior));
   }
 
   static std::string text_of(const FoundStars& found) {
@@ -304,6 +306,7 @@ class PhotometryRun {
                                            const ImagePhotometrySettings& settings, PhotometryRecord& record) const {
     FieldPhotometrySettings field;
     field.zero_point = settings.zero_point;
+    field.psf_error = settings.psf_error;
     if (options_.threshold) field.threshold = *options_.threshold;
     const auto ignored = [&record](const char* option, const char* instead) {
       record.notes.push_back(

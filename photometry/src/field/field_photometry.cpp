@@ -104,8 +104,8 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
       s.dec = direction.dec;
     }
     s.flux = star.flux;
-    s.flux_err = error;
-    s.snr = star.flux / error;
+    s.flux_err = std::hypot(error, settings.psf_error * star.flux);
+    s.snr = star.flux / s.flux_err;
     s.background = field.sky_at(star.x, star.y);
     s.chi2 = core_chi2(field, star, reach.core());
     s.flags = flags_of(frame, star, reach.core());

@@ -137,139 +137,12 @@ void PsfFit::add_star(const FieldSolver& field, std::size_t index, int half, con
   project(star, std::span(residual_).subspan(star.offset, n));
 }
 
-void PsfFit::project(const Star& star, std::span<double> pixels) const {
-  const std::size_t n = pixels.size();
-  for (std::size_t a = 0; a < kFree; ++a) {
-    const double* u = basis_.data() + kFree * star.offset + a * n;
-    const double dot = std::inner_product(pixels.begin(), pixels.end(), u, 0.0);
-    for (std::size_t k = 0; k < n; ++k) pixels[k] -= dot * u[k];
-  }
-}
-
-std::span<const double> PsfFit::of(const Star& star, const std::vector<double>& values) const {
-  return std::span(values).subspan(star.offset, star.pixels());
-}
-
-std::size_t PsfFit::place(int x, int y) const {
-  const int step = present_.samples_per_pixel;
-  const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(step) + static_cast<std::size_t>(x % step);
-  return row * run_ + static_cast<std::size_t>(x / step);
-}
-
-std::vector<double> PsfFit::spread(std::span<const double> coefficients, std::size_t terms) const {
-  const std::size_t size = place(0, rows_);
-  std::vector<double> phases(terms * size, 0.0);
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < terms; ++k)
-    for (int y = 0; y < present_.side(); ++y)
-      for (int x = 0; x < present_.side(); ++x) phases[k * size + place(pad_ + x, pad_ + y)] = coefficients[i++];
-  return phases;
-}
-
-void PsfFit::gather(std::span<const double> phases, std::size_t terms, std::span<double> coefficients) const {
-  const std::size_t size = place(0, rows_);
-  std::size_t i = 0;
-  for (std::size_t k = 0; k < terms; ++k)
-    for (int y = 0; y < present_.side(); ++y)
-      for (int x = 0; x < present_.side(); ++x) coefficients[i++] = phases[k * size + place(pad_ + x, pad_ + y)];
-}
-
-// Calls with the begin and the length of every run of samples that the star's pixels need.
-template <class Visit>
-void PsfFit::for_each_run(const Star& star, Visit visit) const {
-  const int step = present_.samples_per_pixel;
-  const int last_x = star.start_x + step * (star.side - 1) + 3;
-  const int last_y = star.start_y + step * (star.side - 1) + 3;
-  const auto first = static_cast<std::size_t>(star.start_x / step);
-  const std::size_t length = static_cast<std::size_t>(last_x / step) + 1 - first;
-  for (int y = star.start_y; y <= last_y; ++y)
-    for (int phase = 0; phase < step; ++phase) visit(place(phase, y) + first, length);
-}
-
-void PsfFit::combine(const Star& star, std::span<const double> phases, std::size_t terms, std::span<double> sum) const {
-  const std::size_t size = sum.size();
-  for_each_run(star, [&](std::size_t begin, std::size_t length) {
-    double* out = sum.data() + begin;
-    std::copy_n(phases.data() + begin, length, out);
-    for (std::size_t k = 1; k < terms; ++k) {
-      const double* c = phases.data() + k * size + begin;
-      for (std::size_t i = 0; i < length; ++i) out[i] += star.phi[k] * c[i];
-    }
-  });
-}
-
-void PsfFit::add_terms(const Star& star, std::span<double> sum, std::size_t terms, std::span<double> phases) const {
-  const std::size_t size = sum.size();
-  for_each_run(star, [&](std::size_t begin, std::size_t length) {
-    double* in = sum.data() + begin;
-    for (std::size_t k = 0; k < terms; ++k) {
-      double* c = phases.data() + k * size + begin;
-      for (std::size_t i = 0; i < length; ++i) c[i] += star.phi[k] * in[i];
-    }
-    std::fill_n(in, length, 0.0);
-  });
-}
-
-void PsfFit::forward(const Star& star, std::span<const double> phases, std::span<double> pixels) const {
-  const int step = present_.samples_per_pixel;
-  const auto side = static_cast<std::size_t>(star.side);
-  const int first_row = star.start_y;
-  const int last_row = star.start_y + step * (star.side - 1) + 4;
-  std::vector<double>& rows = scratch_;
-  rows.resize(static_cast<std::size_t>(last_row - first_row) * side);
-  for (int r = first_row; r < last_row; ++r) {
-    double* out = rows.data() + static_cast<std::size_t>(r - first_row) * side;
-    const double* c0 = phases.data() + place(star.start_x, r);
-    const double* c1 = phases.data() + place(star.start_x + 1, r);
-    const double* c2 = phases.data() + place(star.start_x + 2, r);
-    const double* c3 = phases.data() + place(star.start_x + 3, r);
-    for (std::size_t i = 0; i < side; ++i)
-      out[i] = star.wx[0] * c0[i] + star.wx[1] * c1[i] + star.wx[2] * c2[i] + star.wx[3] * c3[i];
-  }
-  const double* root = root_weight_.data() + star.offset;
-  std::array<double, 4> w{};
-  for (std::size_t b = 0; b < 4; ++b) w[b] = star.flux * star.wy[b];
-  for (std::size_t j = 0; j < side; ++j) {
-    double* out = pixels.data() + j * side;
-    const double* in = rows.data() + static_cast<std::size_t>(step) * j * side;
-    for (std::size_t i = 0; i < side; ++i)
-      out[i] = root[j * side + i] *
-               (w[0] * in[i] + w[1] * in[side + i] + w[2] * in[2 * side + i] + w[3] * in[3 * side + i]);
-  }
-}
-
-void PsfFit::backward(const Star& star, std::span<const double> pixels, std::span<double> phases) const {
-  const int step = present_.samples_per_pixel;
-  const auto side = static_cast<std::size_t>(star.side);
-  const int first_row = star.start_y;
-  const int last_row = star.start_y + step * (star.side - 1) + 4;
-  std::vector<double>& rows = scratch_;
-  rows.assign(static_cast<std::size_t>(last_row - first_row) * side, 0.0);
-  const double* root = root_weight_.data() + star.offset;
-  for (std::size_t j = 0; j < side; ++j) {
-    const double* in = pixels.data() + j * side;
-    for (std::size_t b = 0; b < 4; ++b) {
-      const double w = star.flux * star.wy[b];
-      double* out = rows.data() + (static_cast<std::size_t>(step) * j + b) * side;
-      for (std::size_t i = 0; i < side; ++i) out[i] += w * root[j * side + i] * in[i];
-    }
-  }
-  for (int r = first_row; r < last_row; ++r) {
-    const double* in = rows.data() + static_cast<std::size_t>(r - first_row) * side;
-    for (int a = 0; a < 4; ++a) {
-      double* c = phases.data() + place(star.start_x + a, r);
-      const double w = star.wx[static_cast<std::size_t>(a)];
-      for (std::size_t i = 0; i < side; ++i) c[i] += w * in[i];
-    }
-  }
-}
-
-void PsfFit::add_prior(std::span<const double> v, std::size_t terms, std::span<double> product) const {
+void PsfFit::add_prior(std::span<const double> v, std::span<const double> prior, std::span<double> product) const {
   const std::size_t n = present_.plane_size();
   const auto width = static_cast<std::size_t>(present_.side());
   constexpr double kRough = 1.0 / (kRoughness * kRoughness);
-  for (std::size_t k = 0; k < terms; ++k) {
-    const double scale = variation_precision(k);
+  for (std::size_t k = 0; k < prior.size(); ++k) {
+    const double scale = prior[k];
     const double* in = v.data() + k * n;
     double* out = product.data() + k * n;
     for (std::size_t i = 0; i < n; ++i) out[i] += scale * precision_[i] * in[i];
@@ -288,8 +161,9 @@ void PsfFit::add_prior(std::span<const double> v, std::size_t terms, std::span<d
   }
 }
 
-void PsfFit::multiply(std::span<const double> v, std::size_t terms, std::span<const char> use,
+void PsfFit::multiply(std::span<const double> v, std::span<const double> prior, std::span<const char> use,
                       std::span<double> product) const {
+  const std::size_t terms = prior.size();
   const std::vector<double> in = spread(v, terms);
   std::vector<double> out(in.size(), 0.0);
   std::vector<double> sum(in.size() / terms);
@@ -306,10 +180,11 @@ void PsfFit::multiply(std::span<const double> v, std::size_t terms, std::span<co
     if (terms > 1) add_terms(star, sum, terms, out);
   }
   gather(out, terms, product);
-  add_prior(v, terms, product);
+  add_prior(v, prior, product);
 }
 
-std::vector<double> PsfFit::diagonal(std::size_t terms, std::span<const char> use) const {
+std::vector<double> PsfFit::diagonal(std::span<const double> prior, std::span<const char> use) const {
+  const std::size_t terms = prior.size();
   const std::size_t n = present_.plane_size();
   const std::size_t size = place(0, rows_);
   std::vector<double> phases(terms * size, 0.0);
@@ -331,23 +206,25 @@ std::vector<double> PsfFit::diagonal(std::size_t terms, std::span<const char> us
   gather(phases, terms, sum);
   constexpr double kSecondDifferences = 12.0;  // 1 + 4 + 1 along both axes
   for (std::size_t k = 0; k < terms; ++k) {
-    const double scale = variation_precision(k) * (1.0 + kSecondDifferences / (kRoughness * kRoughness));
+    const double scale = prior[k] * (1.0 + kSecondDifferences / (kRoughness * kRoughness));
     for (std::size_t i = 0; i < n; ++i) sum[k * n + i] += scale * precision_[i];
   }
   return sum;
 }
 
-EffectivePsf PsfFit::solve(int order, std::span<const char> use) const {
+EffectivePsf PsfFit::solve(const PsfFreedom& freedom, std::span<const char> use) const {
   EffectivePsf result = present_;
-  result.order = std::max(order, present_.order);
+  result.order = std::max(freedom.order, present_.order);
   const std::size_t terms = result.terms();
+  std::vector<double> prior{1.0 / (freedom.from_prior * freedom.from_prior)};
+  for (std::size_t k = 1; k < terms; ++k) prior.push_back(variation_precision(k));
   const std::size_t n = present_.plane_size();
   result.coefficients.resize(terms * n, 0.0);
   std::vector<double> away(terms * n);
   for (std::size_t i = 0; i < away.size(); ++i)
     away[i] = (i < n ? prior_.coefficients[i] : 0.0) - result.coefficients[i];
   std::vector<double> residual(terms * n, 0.0);
-  add_prior(away, terms, residual);
+  add_prior(away, prior, residual);
   {
     const std::size_t size = place(0, rows_);
     std::vector<double> phases(terms * size, 0.0);
@@ -361,7 +238,7 @@ EffectivePsf PsfFit::solve(int order, std::span<const char> use) const {
     gather(phases, terms, slope);
     for (std::size_t i = 0; i < slope.size(); ++i) residual[i] += slope[i];
   }
-  const std::vector<double> scale = diagonal(terms, use);
+  const std::vector<double> scale = diagonal(prior, use);
   std::vector<double> solution(terms * n, 0.0);
   std::vector<double> conditioned(terms * n);
   std::vector<double> product(terms * n);
@@ -373,7 +250,7 @@ EffectivePsf PsfFit::solve(int order, std::span<const char> use) const {
   double rho = std::inner_product(residual.begin(), residual.end(), conditioned.begin(), 0.0);
   const double enough = settings_.tolerance * settings_.tolerance * rho;
   for (int iteration = 0; iteration < settings_.most_iterations && rho > enough && rho > 0.0; ++iteration) {
-    multiply(direction, terms, use, product);
+    multiply(direction, prior, use, product);
     const double curvature = std::inner_product(direction.begin(), direction.end(), product.begin(), 0.0);
     if (!(curvature > 0.0)) break;
     const double alpha = rho / curvature;

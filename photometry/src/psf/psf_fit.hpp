@@ -20,6 +20,12 @@ struct PsfFitSettings {
   std::size_t whole_stars = 150;  ///< the brightest, whose wings count; of the others only the core does
 };
 
+/// How free a PSF is.
+struct PsfFreedom {
+  int order = 0;         ///< of its variation over the field
+  double from_prior = 1.0;  ///< how far it may be from the prior, relative to what the prior may be wrong by
+};
+
 /// The pixels of the chosen stars of a field, what the present PSF leaves in them, and the equations for a better one.
 ///
 /// A star's flux and position change with the PSF: they are eliminated, by projecting the weighted residuals and the
@@ -33,7 +39,7 @@ class PsfFit {
          const EffectivePsf& prior, const PsfFitSettings& settings);
 
   /// The PSF of that order (at least that of `present`). @param use  which of the stars count; empty: all
-  [[nodiscard]] EffectivePsf solve(int order, std::span<const char> use = {}) const;
+  [[nodiscard]] EffectivePsf solve(const PsfFreedom& freedom, std::span<const char> use = {}) const;
   [[nodiscard]] std::size_t usable_pixels() const { return usable_pixels_; }
   /// chi² of every star with another PSF, its flux and position free.
   [[nodiscard]] std::vector<double> chi2(const EffectivePsf& psf) const;
@@ -62,14 +68,17 @@ class PsfFit {
   void combine(const Star& star, std::span<const double> phases, std::size_t terms, std::span<double> sum) const;
   /// Its transpose; leaves zeros where the sum was.
   void add_terms(const Star& star, std::span<double> sum, std::size_t terms, std::span<double> phases) const;
+  /// Calls with the begin and the length of every run of samples that the star's pixels need.
   template <class Visit>
   void for_each_run(const Star& star, Visit visit) const;
   [[nodiscard]] std::vector<double> spread(std::span<const double> coefficients, std::size_t terms) const;
   void gather(std::span<const double> phases, std::size_t terms, std::span<double> coefficients) const;
   [[nodiscard]] std::size_t place(int x, int y) const;
-  void multiply(std::span<const double> v, std::size_t terms, std::span<const char> use, std::span<double> product) const;
-  [[nodiscard]] std::vector<double> diagonal(std::size_t terms, std::span<const char> use) const;
-  void add_prior(std::span<const double> v, std::size_t terms, std::span<double> product) const;
+  void multiply(std::span<const double> v, std::span<const double> prior, std::span<const char> use,
+                std::span<double> product) const;
+  [[nodiscard]] std::vector<double> diagonal(std::span<const double> prior, std::span<const char> use) const;
+  /// @param prior  weight of every term
+  void add_prior(std::span<const double> v, std::span<const double> prior, std::span<double> product) const;
 
   EffectivePsf present_;
   EffectivePsf prior_;
@@ -87,5 +96,16 @@ class PsfFit {
   std::vector<double> precision_;  // of the prior's coefficients
   mutable std::vector<double> scratch_;
 };
+
+template <class Visit>
+void PsfFit::for_each_run(const Star& star, Visit visit) const {
+  const int step = present_.samples_per_pixel;
+  const int last_x = star.start_x + step * (star.side - 1) + 3;
+  const int last_y = star.start_y + step * (star.side - 1) + 3;
+  const auto first = static_cast<std::size_t>(star.start_x / step);
+  const std::size_t length = static_cast<std::size_t>(last_x / step) + 1 - first;
+  for (int y = star.start_y; y <= last_y; ++y)
+    for (int phase = 0; phase < step; ++phase) visit(place(phase, y) + first, length);
+}
 
 }  // namespace astroid::detail

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include "astroid/core/error.hpp"
@@ -15,6 +17,7 @@
 #include "psf/psf_fit.hpp"
 #include "psf/psf_gauge.hpp"
 #include "psf/psf_guess.hpp"
+#include "psf/psf_spread.hpp"
 #include "psf/psf_stars.hpp"
 
 namespace astroid {
@@ -43,32 +46,78 @@ void require_stars(std::size_t count) {
                            .message = "the PSF cannot be measured from this image"});
 }
 
-// Every fourth star is left out and foretold from the others. @returns the order that foretells best.
-int choose_order(const detail::PsfFit& fit, std::size_t stars, int least, int most) {
-  if (least >= most) return least;
-  constexpr std::size_t kFold = 4;
+// How much better left-out stars are foretold.
+struct Gain {
+  double sum = 0.0;
+  double error = 0.0;
+};
+
+// Every fourth star is left out and foretold from the others.
+class Foretelling {
+ public:
+  Foretelling(const detail::PsfFit& fit, std::size_t stars) : fit_(fit), use_(stars, 1) {
+    for (std::size_t i = 0; i < stars; i += kFold) use_[i] = 0;
+  }
+  [[nodiscard]] std::vector<double> chi2(const detail::PsfFreedom& freedom) const {
+    return fit_.chi2(fit_.solve(freedom, use_));
+  }
+  [[nodiscard]] Gain gain(std::span<const double> before, std::span<const double> after) const {
+    Gain gain;
+    double squares = 0.0;
+    for (std::size_t i = 0; i < use_.size(); i += kFold) {
+      gain.sum += before[i] - after[i];
+      squares += (before[i] - after[i]) * (before[i] - after[i]);
+    }
+    gain.error = std::sqrt(squares);
+    return gain;
+  }
+
+ private:
+  static constexpr std::size_t kFold = 4;
+  const detail::PsfFit& fit_;
+  std::vector<char> use_;
+};
+
+// What foretells best: first how near to the prior, then the order of the variation, from that of `least` on.
+detail::PsfFreedom choose_freedom(const detail::PsfFit& fit, std::size_t stars, detail::PsfFreedom least, int most) {
+  const Foretelling foretelling(fit, stars);
+  detail::PsfFreedom best = least;
+  std::vector<double> before = foretelling.chi2(best);
+  for (const double nearer : {0.3, 0.1, 0.03}) {
+    detail::PsfFreedom next = best;
+    next.from_prior = nearer;
+    std::vector<double> after = foretelling.chi2(next);
+    if (!(foretelling.gain(before, after).sum > 0.0)) break;
+    best = next;
+    before = std::move(after);
+  }
   constexpr std::size_t kStarsPerTerm = 10;
   constexpr double kSignificant = 2.0;
-  std::vector<char> use(stars, 1);
-  for (std::size_t i = 0; i < stars; i += kFold) use[i] = 0;
-  int best = least;
-  std::vector<double> before = fit.chi2(fit.solve(best, use));
-  for (int order = best + 1; order <= most; ++order) {
+  for (int order = best.order + 1; order <= most; ++order) {
     const auto terms = static_cast<std::size_t>((order + 1) * (order + 2) / 2);
     if (stars < kStarsPerTerm * terms) break;
-    const std::vector<double> after = fit.chi2(fit.solve(order, use));
-    double sum = 0.0;
-    double squares = 0.0;
-    for (std::size_t i = 0; i < stars; i += kFold) {
-      const double gain = before[i] - after[i];
-      sum += gain;
-      squares += gain * gain;
-    }
-    if (!(sum > kSignificant * std::sqrt(squares))) break;
-    best = order;
-    before = after;
+    detail::PsfFreedom next = best;
+    next.order = order;
+    std::vector<double> after = foretelling.chi2(next);
+    const Gain gain = foretelling.gain(before, after);
+    if (!(gain.sum > kSignificant * gain.error)) break;
+    best = next;
+    before = std::move(after);
   }
   return best;
+}
+
+// The PSF's own error, from how those of two halves of the stars differ: each has twice the variance of the whole.
+double error_of(const detail::FieldSolver& field, std::span<const std::size_t> stars, const detail::PsfFit& fit,
+                const detail::PsfFreedom& freedom, double window) {
+  std::vector<char> even(stars.size(), 0);
+  std::vector<char> odd(stars.size(), 0);
+  for (std::size_t i = 0; i < stars.size(); ++i) (i % 2 == 0 ? even : odd)[i] = 1;
+  EffectivePsf a = fit.solve(freedom, even);
+  EffectivePsf b = fit.solve(freedom, odd);
+  detail::fix_gauge(a, window);
+  detail::fix_gauge(b, window);
+  return 0.5 * detail::flux_spread(field, stars, *make_effective_psf(std::move(a)), *make_effective_psf(std::move(b)));
 }
 
 }  // namespace
@@ -96,7 +145,7 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
   present.field_scale = {std::max(1.0, 0.5 * area.nx), std::max(1.0, 0.5 * area.ny)};
   std::shared_ptr<const PixelPsf> psf = make_effective_psf(present);
   MeasuredPsf result;
-  int order = 0;
+  detail::PsfFreedom freedom;
   for (int round = 0; round < settings.rounds; ++round) {
     const bool first = round == 0;
     const bool last = round + 1 == settings.rounds;
@@ -112,8 +161,9 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
     const detail::PsfFitSettings fit_settings{.model_error = first ? 0.05 : last ? 0.003 : 0.01};
     const EffectivePsf prior = detail::effective_gaussian(sigma, samples, reach * samples);
     const detail::PsfFit fit(field.solver(), stars, present, prior, fit_settings);
-    if (last || !first) order = choose_order(fit, stars.size(), order, settings.most_order);
-    present = fit.solve(order);
+    if (!first) freedom = choose_freedom(fit, stars.size(), {.order = freedom.order}, settings.most_order);
+    present = fit.solve(freedom);
+    if (last) result.flux_error = error_of(field.solver(), stars, fit, freedom, wide);
     detail::fix_gauge(present, wide);
     sigma = detail::nearest_sigma(present);
     psf = make_effective_psf(present);
@@ -121,6 +171,7 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
     result.stars = stars.size();
     result.chi2 = std::accumulate(chi2.begin(), chi2.end(), 0.0) / static_cast<double>(fit.usable_pixels());
   }
+  result.from_prior = freedom.from_prior;
   result.psf = std::move(present);
   return result;
 }

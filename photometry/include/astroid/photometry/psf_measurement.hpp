@@ -20,6 +20,8 @@ struct PsfMeasurementSettings {
 struct MeasuredPsf {
   EffectivePsf psf;
   std::size_t stars = 0;  ///< that it was measured from
+  double flux_error = 0.0;  ///< sigma of what the PSF's error does to the flux of a bright star, relative
+  double from_prior = 1.0;  ///< how far the PSF was allowed to be from a Gaussian, of 1
   double chi2 = 0.0;      ///< per pixel of these stars and degree of freedom; outliers have little weight in it
 };
 
