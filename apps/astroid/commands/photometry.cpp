@@ -264,8 +264,8 @@ class PhotometryRun {
     settings.psf_error = measured.flux_error;
     settings.psf = make_effective_psf(std::move(measured.psf));
     record.notes.push_back(
-        fmt::format("The PSF was measured from {} stars: {}; chi2 {:.3f} a pixel, {:.2g} % of a flux are its doubt, {:.2f} of the prior freedom.",
-                    measured.stars, settings.psf->description(), measured.chi2, 100.0 * measured.flux_error, measured.from_prior));
+        fmt::format("The PSF was measured from {} stars: {}; chi2 {:.3f} a pixel, {:.2g} % of a flux are its doubt.",
+                    measured.stars, settings.psf->description(), measured.chi2, 100.0 * measured.flux_error));
   }
 
   static std::string text_of(const FoundStars& found) {

@@ -80,7 +80,12 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
   constexpr int kMargin = 8;  // px: stars may lie a little outside, and vectors are read whole
   detail::FieldPixels pixels = detail::field_pixels(frame, settings.mesh, reach.most() + kMargin);
   if (!pixels.any) return {};
-  const detail::FieldFitSettings fit_settings{settings.threshold, settings.rounds, settings.mesh.cell};
+  // What an error of the flux is in single pixels, where it is positive and negative.
+  constexpr double kDoubtPerError = 5.0;
+  const detail::FieldFitSettings fit_settings{.threshold = settings.threshold,
+                                              .rounds = settings.rounds,
+                                              .sky_cell = settings.mesh.cell,
+                                              .psf_doubt = kDoubtPerError * settings.psf_error};
   detail::FieldFit fit(psf, reach, pixels, fit_settings);
   fit.run();
   detail::FieldSolver& field = fit.solver();

@@ -5,6 +5,8 @@
 #include <functional>
 #include <numeric>
 
+#include "psf/psf_gauge.hpp"
+
 namespace astroid::detail {
 
 namespace {
@@ -25,6 +27,8 @@ double variation_precision(std::size_t term) {
   const double v = kVariation[order_of(term)];
   return 1.0 / (v * v);
 }
+// Of flux (of 1) and of place (px), within which terms are held.
+constexpr std::array<double, 3> kHeld{0.01, 0.01, 0.01};
 // Residuals beyond this many sigma lose weight.
 constexpr double kRobust = 3.0;
 
@@ -48,6 +52,7 @@ PsfFit::PsfFit(const FieldSolver& field, std::span<const std::size_t> stars, con
       const double deviation = kPriorShare * std::abs(prior_.coefficients[i++]) + kPriorFloor * largest * wing;
       precision_.push_back(1.0 / (deviation * deviation));
     }
+  gauge_ = gauge_weights(prior_, settings.window);
   std::vector<double> fluxes;
   for (const std::size_t index : stars) fluxes.push_back(field.stars()[index].flux);
   double least = 0.0;
@@ -161,6 +166,17 @@ void PsfFit::add_prior(std::span<const double> v, std::span<const double> prior,
   }
 }
 
+void PsfFit::add_gauge(std::span<const double> v, std::size_t terms, std::span<double> product) const {
+  const std::size_t n = present_.plane_size();
+  for (std::size_t k = 0; k < terms; ++k)
+    for (std::size_t g = 0; g < gauge_.size(); ++g) {
+      const std::vector<double>& weight = gauge_[g];
+      const double sum = std::inner_product(weight.begin(), weight.end(), v.data() + k * n, 0.0);
+      const double push = sum / (kHeld[g] * kHeld[g]);
+      for (std::size_t i = 0; i < n; ++i) product[k * n + i] += push * weight[i];
+    }
+}
+
 void PsfFit::multiply(std::span<const double> v, std::span<const double> prior, std::span<const char> use,
                       std::span<double> product) const {
   const std::size_t terms = prior.size();
@@ -181,6 +197,7 @@ void PsfFit::multiply(std::span<const double> v, std::span<const double> prior, 
   }
   gather(out, terms, product);
   add_prior(v, prior, product);
+  add_gauge(v, terms, product);
 }
 
 std::vector<double> PsfFit::diagonal(std::span<const double> prior, std::span<const char> use) const {
@@ -208,6 +225,11 @@ std::vector<double> PsfFit::diagonal(std::span<const double> prior, std::span<co
   for (std::size_t k = 0; k < terms; ++k) {
     const double scale = prior[k] * (1.0 + kSecondDifferences / (kRoughness * kRoughness));
     for (std::size_t i = 0; i < n; ++i) sum[k * n + i] += scale * precision_[i];
+    for (std::size_t g = 0; g < gauge_.size(); ++g)
+      for (std::size_t i = 0; i < n; ++i) {
+        const double weight = gauge_[g][i] / kHeld[g];
+        sum[k * n + i] += weight * weight;
+      }
   }
   return sum;
 }
@@ -225,6 +247,7 @@ EffectivePsf PsfFit::solve(const PsfFreedom& freedom, std::span<const char> use)
     away[i] = (i < n ? prior_.coefficients[i] : 0.0) - result.coefficients[i];
   std::vector<double> residual(terms * n, 0.0);
   add_prior(away, prior, residual);
+  add_gauge(away, terms, residual);
   {
     const std::size_t size = place(0, rows_);
     std::vector<double> phases(terms * size, 0.0);

@@ -146,30 +146,42 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
   std::shared_ptr<const PixelPsf> psf = make_effective_psf(present);
   MeasuredPsf result;
   detail::PsfFreedom freedom;
+  double misfit = 1.0;
   for (int round = 0; round < settings.rounds; ++round) {
     const bool first = round == 0;
-    const bool last = round + 1 == settings.rounds;
     const detail::PsfReach stamps(*psf, present.field_centre, kLargestStamp);
     // Only bright stars at first: with a wrong PSF what is left of them looks like more stars.
     const detail::FieldFitSettings field_settings{.threshold = first ? 10.0 : 5.0, .rounds = first ? 1 : 2,
-                                                  .sky_cell = settings.mesh.cell};
+                                                  .sky_cell = settings.mesh.cell,
+                                                  .psf_doubt = first ? 0.2 : 0.1,
+                                                  .companions = false};
     detail::FieldFit field(*psf, stamps, pixels, field_settings);
     field.run();
     const std::vector<std::size_t> stars =
         detail::choose_psf_stars(field.solver(), settings.snr, settings.most_stars);
     require_stars(stars.size());
-    const detail::PsfFitSettings fit_settings{.model_error = first ? 0.05 : last ? 0.003 : 0.01};
+    constexpr double kLeastMisfit = 0.003;
+    const double before = std::exchange(misfit, detail::psf_misfit(field.solver(), stars));
+    const detail::PsfFitSettings fit_settings{.model_error = std::max(misfit, kLeastMisfit), .window = wide};
     const EffectivePsf prior = detail::effective_gaussian(sigma, samples, reach * samples);
     const detail::PsfFit fit(field.solver(), stars, present, prior, fit_settings);
     if (!first) freedom = choose_freedom(fit, stars.size(), {.order = freedom.order}, settings.most_order);
     present = fit.solve(freedom);
-    if (last) result.flux_error = error_of(field.solver(), stars, fit, freedom, wide);
     detail::fix_gauge(present, wide);
     sigma = detail::nearest_sigma(present);
-    psf = make_effective_psf(present);
+    const std::shared_ptr<const PixelPsf> better = make_effective_psf(present);
+    const double change = detail::flux_spread(field.solver(), stars, *psf, *better);
     const std::vector<double> chi2 = fit.chi2(present);
     result.stars = stars.size();
     result.chi2 = std::accumulate(chi2.begin(), chi2.end(), 0.0) / static_cast<double>(fit.usable_pixels());
+    constexpr double kGain = 0.8;           // of the misfit: more than this is no gain
+    constexpr double kLeastChange = 0.001;  // of fluxes
+    const bool settled = misfit <= kLeastMisfit ? change < kLeastChange : misfit > kGain * before;
+    if (round + 1 == settings.rounds || (!first && settled)) {
+      result.flux_error = error_of(field.solver(), stars, fit, freedom, wide);
+      break;
+    }
+    psf = better;
   }
   result.from_prior = freedom.from_prior;
   result.psf = std::move(present);

@@ -10,7 +10,7 @@
 namespace astroid {
 
 struct PsfMeasurementSettings {
-  int rounds = 3;                ///< of fitting the field and improving the PSF
+  int rounds = 6;                ///< of fitting the field and improving the PSF, at most
   std::size_t most_stars = 600;  ///< the brightest usable ones
   int most_order = 2;            ///< of the polynomials over the field, 0 … 2
   double snr = 30.0;             ///< least, of a star that counts
@@ -29,8 +29,8 @@ struct MeasuredPsf {
 ///
 /// It begins with a Gaussian as wide as the image's stars are. All stars are found and fitted together; from what is
 /// left in the pixels of the brightest ones, unsaturated and at most half of whose light is of others, follows a better
-/// PSF; and again, `rounds` times. The order of its variation over the field is the highest that explains stars which
-/// were left out of the fit better than the order below, by more than twice the error of the improvement. The flux
+/// PSF; and again, as long as that makes it better. How near it keeps to a Gaussian of the same width, and the order of its variation over the field, are those that foretell
+/// stars which were left out of the fit best; a higher order must gain more than twice the error of the gain. The flux
 /// within the grid is 1 for every star, on the mean over sub-pixel phases; what is farther out than about four FWHM is
 /// left out and does not count. The centroid, under a Gaussian window of the PSF's own width, is 0.
 /// @throws InputError when fewer than 10 stars can be used, or settings are out of range.
