@@ -151,6 +151,12 @@ int run_command_line(int argc, char** argv) {
          "write the image without its background and its stars, as their PSF says (without --psf a Gaussian of "
          "the measured width)")
       ->type_name("FILE");
+  sub->add_option("--psf-output", photometry_options.psf_output,
+                  "write the PSF that was measured from the image: a FITS file for --psf")
+      ->type_name("FILE");
+  sub->add_option("--phase-errors", photometry_options.phase_errors,
+                  "write what the PSF leaves of bright stars against their place within a pixel")
+      ->type_name("FILE");
   sub->add_option("--gain", photometry_options.gain, "if the header does not say it")->type_name("E-/ADU");
   sub->add_option("--read-noise", photometry_options.read_noise, "if the header does not say it")->type_name("E-");
   sub->add_flag("--ignore-overscan", photometry_options.ignore_overscan,

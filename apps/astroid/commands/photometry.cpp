@@ -14,6 +14,7 @@
 #include "astroid/photometry/field_photometry.hpp"
 #include "astroid/photometry/found_stars.hpp"
 #include "astroid/photometry/image_photometry.hpp"
+#include "astroid/photometry/phase_errors.hpp"
 #include "astroid/photometry/psf_measurement.hpp"
 #include "astroid/photometry/residual_image.hpp"
 #include "astroid/photometry/scene_choice.hpp"
@@ -124,6 +125,8 @@ void check_options(const PhotometryOptions& options, bool blind) {
   if (!local && (!options.annulus.empty() || options.clip))
     complain("--annulus, --clip", "", "--background local with it",
              "there is no annulus around stars that are found on a mesh");
+  if (!options.psf_output.empty() && psf && options.psf != kMeasured)
+    complain("--psf-output", options.psf_output, "--psf measured with it", "the PSF is given, and none is measured");
   if (options.threshold && !(*options.threshold > 0.0))
     complain("--threshold", fmt::format("{}", *options.threshold), "more than 0", "everything would be a star");
   if (options.threshold && !blind)
@@ -161,9 +164,13 @@ class PhotometryRun {
 
   void measure(const std::string& image) {
     const std::filesystem::path output = output_for(options_, options_.output, image);
-    const std::filesystem::path residual =
-        options_.residual.empty() ? std::filesystem::path() : output_for(options_, options_.residual, image);
-    for (const std::filesystem::path& file : {output, residual})
+    const auto optional = [&](const std::string& name) {
+      return name.empty() ? std::filesystem::path() : output_for(options_, name, image);
+    };
+    const std::filesystem::path residual = optional(options_.residual);
+    const std::filesystem::path psf_output = optional(options_.psf_output);
+    const std::filesystem::path phases = optional(options_.phase_errors);
+    for (const std::filesystem::path& file : {output, residual, psf_output, phases})
       if (!file.empty() && std::filesystem::exists(file) && !options_.overwrite)
         throw InputError(
             Problem{.file = file.string(), .expected = "another FILE, or --overwrite", .message = "the file exists"});
@@ -177,7 +184,11 @@ class PhotometryRun {
     const auto map = std::make_shared<const BackgroundMap>(file.frame, 0, settings_.mesh);
     if (file.gain_assumed) measure_missing_gain(*map, file);
     record.notes = std::move(file.notes);
-    const std::vector<SourceMeasurement> sources = measure_sources(file.frame, sky, map, record);
+    ImagePhotometrySettings settings = settings_;
+    settings.map = map;
+    std::optional<MeasuredPsf> measured;
+    if (options_.psf == kMeasured) measured = use_measured_psf(file.frame, settings, record);
+    const std::vector<SourceMeasurement> sources = measure_sources(file.frame, sky, settings, measured, record);
     record.seconds_measuring = std::chrono::duration<double>(std::chrono::steady_clock::now() - was_read).count();
     record.gain = file.frame.header.gain.value();
     record.readout_noise = file.frame.header.readout_noise.value();
@@ -190,10 +201,15 @@ class PhotometryRun {
     record.sources = sources.size();
     for (const std::string& note : record.notes) fmt::print(stderr, "{}: {}\n", image, note);
     write_table(output, sources, record);
-    if (!residual.empty()) {
-      const std::shared_ptr<const PixelPsf> psf = settings_.psf ? settings_.psf : gaussian_of(record.fwhm);
-      write_residual(residual, residual_image(file.frame, *map, sources, *psf), record);
+    if (!residual.empty() || !phases.empty()) {
+      const std::shared_ptr<const PixelPsf> psf = settings.psf ? settings.psf : gaussian_of(record.fwhm);
+      const Image<float, unit::Adu> left = residual_image(file.frame, *map, sources, *psf);
+      if (!residual.empty()) write_residual(residual, left, record);
+      if (!phases.empty())
+        write_phase_errors(phases,
+                           phase_errors(left, file.frame.header.gain, record.background_rms, sources, *psf));
     }
+    if (!psf_output.empty() && measured) write_effective_psf(psf_output, measured->psf);
     if (options_.method == "auto") fmt::print("{}: method {}: {}\n", image, record.method, record.why);
     fmt::print("{}: {} of {} sources measured, {} flagged: {}\n", image, record.measured, record.sources,
                record.flagged, output.string());
@@ -216,11 +232,8 @@ class PhotometryRun {
   }
 
   std::vector<SourceMeasurement> measure_sources(const Frame& frame, const SkyProjection* sky,
-                                                 const std::shared_ptr<const BackgroundMap>& map,
-                                                 PhotometryRecord& record) {
-    ImagePhotometrySettings settings = settings_;
-    settings.map = map;
-    if (options_.psf == kMeasured) use_measured_psf(frame, settings, record);
+                                                 ImagePhotometrySettings& settings,
+                                                 std::optional<MeasuredPsf>& measured, PhotometryRecord& record) {
     record.why = "it was asked for";
     record.method = options_.method;
     std::optional<FoundStars> found;
@@ -238,9 +251,10 @@ class PhotometryRun {
       }
       found = measure_found_stars(frame, sky, find);
     }
-    record.fwhm = found && found->detection.fwhm_measured ? found->detection.fwhm : measure_fwhm(frame, *map);
+    record.fwhm = found && found->detection.fwhm_measured ? found->detection.fwhm : measure_fwhm(frame, *settings.map);
     if (options_.method == "auto") {
-      const MethodChoice choice = choose_method(summary(frame, sky, found, record.fwhm));
+      MethodChoice choice = choose_method(summary(frame, sky, found, settings.psf != nullptr, record.fwhm));
+      if (choice.measure_psf) try_to_measure_psf(frame, settings, choice, measured, record);
       settings.method = choice.method;
       record.why = choice.why;
       record.method = name_of(choice.method);
@@ -259,13 +273,26 @@ class PhotometryRun {
     return std::move(found->sources);
   }
 
-  static void use_measured_psf(const Frame& frame, ImagePhotometrySettings& settings, PhotometryRecord& record) {
+  static MeasuredPsf use_measured_psf(const Frame& frame, ImagePhotometrySettings& settings,
+                                      PhotometryRecord& record) {
     MeasuredPsf measured = measure_psf(frame);
     settings.psf_error = measured.flux_error;
-    settings.psf = make_effective_psf(std::move(measured.psf));
-    record.notes.push_back(
-        fmt::format("The PSF was measured from {} stars: {}; chi2 {:.3f} a pixel, {:.2g} % of a flux are its doubt.",
-                    measured.stars, settings.psf->description(), measured.chi2, 100.0 * measured.flux_error));
+    settings.psf = make_effective_psf(measured.psf);
+    record.notes.push_back(fmt::format("The PSF was measured from {} stars: {}; its error makes {:.2g} % of a flux.",
+                                       measured.stars, settings.psf->description(), 100.0 * measured.flux_error));
+    return measured;
+  }
+
+  // Circles, where an image does not show enough stars.
+  static void try_to_measure_psf(const Frame& frame, ImagePhotometrySettings& settings, MethodChoice& choice,
+                                 std::optional<MeasuredPsf>& measured, PhotometryRecord& record) {
+    try {
+      measured = use_measured_psf(frame, settings, record);
+    } catch (const InputError& error) {
+      choice.method = PhotometryMethod::kAperture;
+      choice.why = fmt::format("{}; but it could not be ({}), so circles", choice.why,
+                               error.problems().empty() ? "unknown" : error.problems().front().value);
+    }
   }
 
   static std::string text_of(const FoundStars& found) {
@@ -278,9 +305,9 @@ class PhotometryRun {
   }
 
   ImageScene summary(const Frame& frame, const SkyProjection* sky, const std::optional<FoundStars>& found,
-                     double fwhm) const {
+                     bool psf_known, double fwhm) const {
     ImageScene scene;
-    scene.psf_given = settings_.psf != nullptr;
+    scene.psf_given = psf_known;
     scene.catalogue = !blind_;
     scene.fwhm = fwhm;
     if (found) {

@@ -178,7 +178,10 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
     constexpr double kLeastChange = 0.001;  // of fluxes
     const bool settled = misfit <= kLeastMisfit ? change < kLeastChange : misfit > kGain * before;
     if (round + 1 == settings.rounds || (!first && settled)) {
-      result.flux_error = error_of(field.solver(), stars, fit, freedom, wide);
+      // A prior that holds the shape does not know its width better than the photons say.
+      double electrons = 0.0;
+      for (const std::size_t i : stars) electrons += field.solver().stars()[i].flux;
+      result.flux_error = std::hypot(error_of(field.solver(), stars, fit, freedom, wide), 1.0 / std::sqrt(electrons));
       break;
     }
     psf = better;
