@@ -125,7 +125,10 @@ int run_command_line(int argc, char** argv) {
          "and it says why")
       ->check(CLI::IsMember({"auto", "aperture", "mask", "weighted", "psf"}))
       ->capture_default_str();
-  sub->add_option("--psf", photometry_options.psf, "a FITS file, gaussian:SIGMA_PX, or measured: from the stars of the image; all but apertures need it")
+  sub->add_option(
+         "--psf", photometry_options.psf,
+         "a FITS file, gaussian:SIGMA_PX, or measured: from the stars of the image (auto does so in crowds); all "
+         "but apertures need it")
       ->type_name("PSF");
   sub->add_option("--threshold", photometry_options.threshold,
                   "of stars that are found, in units of their noise (default: 5)")

@@ -39,9 +39,7 @@ std::vector<PhaseError> phase_errors(const Image<float, unit::Adu>& residual, Ga
     psf.integrate({source.x, source.y}, pixel, fraction);
     const double light = source.flux * fraction[0];
     if (!std::isfinite(left) || !(light > 0.0)) continue;
-    const auto cell = [&](double offset) {
-      return std::min(cells - 1, static_cast<std::size_t>((offset + 0.5) * n));
-    };
+    const auto cell = [&](double offset) { return std::min(cells - 1, static_cast<std::size_t>((offset + 0.5) * n)); };
     const std::size_t i = cell(source.y - py) * cells + cell(source.x - px);
     const double variance = noise * noise + light;
     sums[i].light += left * light / variance;
@@ -59,10 +57,9 @@ std::vector<PhaseError> phase_errors(const Image<float, unit::Adu>& residual, Ga
 void write_phase_errors(const std::filesystem::path& file, std::span<const PhaseError> errors) {
   std::string text = "phase_x,phase_y,stars,residual,residual_err\n";
   for (const PhaseError& e : errors)
-    text += e.stars > 0
-                ? fmt::format("{:.3f},{:.3f},{},{:.6g},{:.3g}\n", e.phase_x, e.phase_y, e.stars, e.residual,
-                              e.residual_error)
-                : fmt::format("{:.3f},{:.3f},0,,\n", e.phase_x, e.phase_y);
+    text += e.stars > 0 ? fmt::format("{:.3f},{:.3f},{},{:.6g},{:.3g}\n", e.phase_x, e.phase_y, e.stars, e.residual,
+                                      e.residual_error)
+                        : fmt::format("{:.3f},{:.3f},0,,\n", e.phase_x, e.phase_y);
   AtomicFile out(file);
   out.write(text);
   out.commit();

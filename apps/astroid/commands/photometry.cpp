@@ -206,8 +206,7 @@ class PhotometryRun {
       const Image<float, unit::Adu> left = residual_image(file.frame, *map, sources, *psf);
       if (!residual.empty()) write_residual(residual, left, record);
       if (!phases.empty())
-        write_phase_errors(phases,
-                           phase_errors(left, file.frame.header.gain, record.background_rms, sources, *psf));
+        write_phase_errors(phases, phase_errors(left, file.frame.header.gain, record.background_rms, sources, *psf));
     }
     if (!psf_output.empty() && measured) write_effective_psf(psf_output, measured->psf);
     if (options_.method == "auto") fmt::print("{}: method {}: {}\n", image, record.method, record.why);
@@ -273,8 +272,7 @@ class PhotometryRun {
     return std::move(found->sources);
   }
 
-  static MeasuredPsf use_measured_psf(const Frame& frame, ImagePhotometrySettings& settings,
-                                      PhotometryRecord& record) {
+  static MeasuredPsf use_measured_psf(const Frame& frame, ImagePhotometrySettings& settings, PhotometryRecord& record) {
     MeasuredPsf measured = measure_psf(frame);
     settings.psf_error = measured.flux_error;
     settings.psf = make_effective_psf(measured.psf);

@@ -14,7 +14,8 @@ struct FieldFitSettings {
   double threshold = 5.0;  ///< least flux of a star in units of its error, neighbours free
   int rounds = 10;         ///< of detection at most
   int sky_cell = 64;       ///< px
-  double psf_doubt = 0.0;  ///< share of a star's light in a pixel that the PSF may be wrong by: fainter than this is no star
+  double psf_doubt =
+      0.0;  ///< share of a star's light in a pixel that the PSF may be wrong by: fainter than this is no star
   bool companions = true;  ///< whether stars are looked for that hide within a FWHM of another
 };
 

@@ -22,7 +22,9 @@ constexpr double kRoughness = 0.3;
 constexpr std::array<double, 3> kVariation{1.0, 0.3, 0.1};
 
 // Of 1, u, v, u², uv, v².
-constexpr std::size_t order_of(std::size_t term) { return term == 0 ? 0 : term < 3 ? 1 : 2; }
+constexpr std::size_t order_of(std::size_t term) {
+  return term == 0 ? 0 : term < 3 ? 1 : 2;
+}
 double variation_precision(std::size_t term) {
   const double v = kVariation[order_of(term)];
   return 1.0 / (v * v);

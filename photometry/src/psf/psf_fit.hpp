@@ -21,13 +21,13 @@ struct PsfFitSettings {
   double neighbour_error = 0.05;  ///< the same of its neighbours' light
   double tolerance = 1e-3;        ///< of conjugate gradients: the residual's norm
   int most_iterations = 150;      ///< of them
-  double window = 1.0;           ///< px, sigma of the window of the centroid that is held at 0
+  double window = 1.0;            ///< px, sigma of the window of the centroid that is held at 0
   std::size_t whole_stars = 150;  ///< the brightest, whose wings count; of the others only the core does
 };
 
 /// How free a PSF is.
 struct PsfFreedom {
-  int order = 0;         ///< of its variation over the field
+  int order = 0;            ///< of its variation over the field
   double from_prior = 1.0;  ///< how far it may be from the prior, relative to what the prior may be wrong by
 };
 
@@ -36,7 +36,8 @@ struct PsfFreedom {
 /// A star's flux and position change with the PSF: they are eliminated, by projecting the weighted residuals and the
 /// PSF's changes on what no change of flux and position makes. So a step is one of Gauss-Newton in all unknowns, and
 /// needs no alternation. Coefficients have a prior: a Gaussian of given width, known to half of itself and 2 % of the
-/// peak, and smooth on the scale of the grid; the flux and the centroid of every term are held. @source F141, F142; AndersonKing2000
+/// peak, and smooth on the scale of the grid; the flux and the centroid of every term are held. @source F141, F142;
+/// AndersonKing2000
 class PsfFit {
  public:
   /// @param stars  indices in field.stars()  @param prior  of the same grid, order 0

@@ -92,8 +92,8 @@ void PsfFit::forward(const Star& star, std::span<const double> phases, std::span
     double* out = pixels.data() + j * side;
     const double* in = rows.data() + static_cast<std::size_t>(step) * j * side;
     for (std::size_t i = 0; i < side; ++i)
-      out[i] = root[j * side + i] *
-               (w[0] * in[i] + w[1] * in[side + i] + w[2] * in[2 * side + i] + w[3] * in[3 * side + i]);
+      out[i] =
+          root[j * side + i] * (w[0] * in[i] + w[1] * in[side + i] + w[2] * in[2 * side + i] + w[3] * in[3 * side + i]);
   }
 }
 

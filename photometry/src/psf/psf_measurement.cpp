@@ -24,8 +24,8 @@ namespace astroid {
 
 namespace {
 
-constexpr int kLargestStamp = 40;       // px, half-side
-constexpr int kMargin = 8;              // px
+constexpr int kLargestStamp = 40;  // px, half-side
+constexpr int kMargin = 8;         // px
 constexpr std::size_t kLeastStars = 10;
 constexpr double kPixelVariance = 1.0 / 12.0;  // px²
 
@@ -39,11 +39,11 @@ void check(const PsfMeasurementSettings& s) {
 
 void require_stars(std::size_t count) {
   if (count >= kLeastStars) return;
-  throw InputError(Problem{.parameter = "--psf",
-                           .value = fmt::format("measured, of {} stars", count),
-                           .expected = fmt::format("at least {} bright stars that stand alone, or a PSF that is given",
-                                                   kLeastStars),
-                           .message = "the PSF cannot be measured from this image"});
+  throw InputError(
+      Problem{.parameter = "--psf",
+              .value = fmt::format("measured, of {} stars", count),
+              .expected = fmt::format("at least {} bright stars that stand alone, or a PSF that is given", kLeastStars),
+              .message = "the PSF cannot be measured from this image"});
 }
 
 // How much better left-out stars are foretold.
@@ -133,7 +133,7 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
   if (!(sigma > 0.0)) require_stars(0);
 
   const double wide = std::sqrt(sigma * sigma + kPixelVariance);
-  constexpr double kSamplesPerSigma = 2.0;  // a spline then misses 5e-4 of a Gaussian's peak
+  constexpr double kSamplesPerSigma = 2.0;  // a spline then misses 1e-3 of a Gaussian's peak
   constexpr int kMostSamples = 4;
   const int samples = std::clamp(static_cast<int>(std::ceil(kSamplesPerSigma / wide)), 2, kMostSamples);
   constexpr double kGridFwhm = 4.0;
@@ -151,14 +151,14 @@ MeasuredPsf measure_psf(const Frame& frame, const PsfMeasurementSettings& settin
     const bool first = round == 0;
     const detail::PsfReach stamps(*psf, present.field_centre, kLargestStamp);
     // Only bright stars at first: with a wrong PSF what is left of them looks like more stars.
-    const detail::FieldFitSettings field_settings{.threshold = first ? 10.0 : 5.0, .rounds = first ? 1 : 2,
+    const detail::FieldFitSettings field_settings{.threshold = first ? 10.0 : 5.0,
+                                                  .rounds = first ? 1 : 2,
                                                   .sky_cell = settings.mesh.cell,
                                                   .psf_doubt = first ? 0.2 : 0.1,
                                                   .companions = false};
     detail::FieldFit field(*psf, stamps, pixels, field_settings);
     field.run();
-    const std::vector<std::size_t> stars =
-        detail::choose_psf_stars(field.solver(), settings.snr, settings.most_stars);
+    const std::vector<std::size_t> stars = detail::choose_psf_stars(field.solver(), settings.snr, settings.most_stars);
     require_stars(stars.size());
     constexpr double kLeastMisfit = 0.003;
     const double before = std::exchange(misfit, detail::psf_misfit(field.solver(), stars));
