@@ -12,6 +12,8 @@
 #include "field/field_fit.hpp"
 #include "field/field_pixels.hpp"
 #include "field/hidden_stars.hpp"
+#include "field/unsettled_star.hpp"
+#include "source_places.hpp"
 
 namespace astroid {
 
@@ -27,27 +29,6 @@ void check_settings(const FieldPhotometrySettings& settings) {
                            .value = fmt::format("{}, {}", settings.threshold, settings.rounds),
                            .expected = "both more than 0",
                            .message = "nothing can be detected"});
-}
-
-std::uint32_t flags_of(const Frame& frame, const detail::ModelStar& star, int core) {
-  const auto flags = frame.flags.view(0);
-  const auto values = frame.pixels.view(0);
-  const Rectangle& area = flags.area();
-  const int x0 = area.x0 + static_cast<int>(std::floor(star.x + 0.5));
-  const int y0 = area.y0 + static_cast<int>(std::floor(star.y + 0.5));
-  std::uint32_t result = 0;
-  for (int y = y0 - core; y <= y0 + core; ++y) {
-    for (int x = x0 - core; x <= x0 + core; ++x) {
-      if (!area.contains(x, y)) {
-        result |= measurement_flag::kEdge;
-        continue;
-      }
-      const unsigned f = flags.at(x, y);
-      if ((f & (pixel_flag::kFullWell | pixel_flag::kAdcSaturated)) != 0U) result |= measurement_flag::kSaturated;
-      if ((f & pixel_flag::kBad) != 0U || !std::isfinite(values.at(x, y))) result |= measurement_flag::kBadPixel;
-    }
-  }
-  return result;
 }
 
 double core_chi2(const detail::FieldSolver& field, const detail::ModelStar& star, int core) {
@@ -93,8 +74,21 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
   detail::LocalFit local(field);
   std::vector<SourceMeasurement> sources;
   for (std::size_t i = 0; i < field.stars().size(); ++i) {
-    const detail::ModelStar& star = field.stars()[i];
-    const detail::StarCovariance c = local.covariance(i);
+    detail::ModelStar star = field.stars()[i];
+    detail::StarCovariance c = local.covariance(i);
+    std::uint32_t flags = c.share < kBlendedShare ? measurement_flag::kBlended : 0U;
+    if (detail::is_unsettled(star) && !c.degenerate) {
+      const FittedStar settled = detail::settle(field, i);
+      constexpr std::uint32_t kNot = measurement_flag::kUnsettled | measurement_flag::kMerged;
+      if ((settled.flags & kNot) == 0U && std::isfinite(settled.flux)) {
+        star.flux = settled.flux;
+        star.x = settled.position.x;
+        star.y = settled.position.y;
+        c.covariance = settled.covariance;
+      } else {
+        flags |= measurement_flag::kUnsettled;
+      }
+    }
     const double error = std::sqrt(c.covariance[0] * (1.0 + hidden.excess(star.flux)));
     if (c.degenerate || !(star.flux >= settings.threshold * error)) continue;
     SourceMeasurement s;
@@ -113,8 +107,7 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
     s.snr = star.flux / s.flux_err;
     s.background = field.sky_at(star.x, star.y);
     s.chi2 = core_chi2(field, star, reach.core());
-    s.flags = flags_of(frame, star, reach.core());
-    if (c.share < kBlendedShare) s.flags |= measurement_flag::kBlended;
+    s.flags = flags | detail::pixel_flags_around(frame, {area.x0 + star.x, area.y0 + star.y}, reach.core());
     s.mag = kNaN;
     s.mag_err = kNaN;
     if (const auto mag = magnitude_of(Electrons(s.flux) / frame.header.exposure_time, settings.zero_point)) {

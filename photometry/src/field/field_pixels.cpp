@@ -4,6 +4,8 @@
 #include <cmath>
 #include <vector>
 
+#include "source_places.hpp"
+
 namespace astroid::detail {
 
 namespace {
@@ -21,7 +23,6 @@ FieldPixels field_pixels(const Frame& frame, const MeshSettings& settings, int p
   const Rectangle& area = values.area();
   const PaddedPlane empty(area.nx, area.ny, pad);
   FieldPixels pixels{.electrons = empty, .usable = empty, .sky = empty};
-  constexpr unsigned kUnusable = 0xFFU & ~(pixel_flag::kTruth | pixel_flag::kShortRamp);
   std::vector<double> level(static_cast<std::size_t>(area.nx));
   for (int j = 0; j < area.ny; ++j) {
     mesh.level_row(area.y0 + j, level);
@@ -30,7 +31,7 @@ FieldPixels field_pixels(const Frame& frame, const MeshSettings& settings, int p
     for (std::size_t i = 0; i < row.size(); ++i) {
       const double sky = gain * (level[i] - bias);
       pixels.sky.row(j)[i] = std::isfinite(sky) ? static_cast<float>(sky) : 0.0F;
-      if (!std::isfinite(row[i]) || (flag[i] & kUnusable) != 0U) continue;
+      if (!may_be_fitted(flag[i], row[i])) continue;
       pixels.electrons.row(j)[i] = static_cast<float>(gain * (static_cast<double>(row[i]) - bias));
       pixels.usable.row(j)[i] = 1.0F;
       pixels.any = true;
