@@ -121,9 +121,9 @@ int run_command_line(int argc, char** argv) {
       ->type_name("FILE");
   sub->add_option(
          "--method", photometry_options.method,
-         "aperture, mask (optimal binary), weighted, psf (neighbours fitted too), or auto: what suits the scene, "
-         "and it says why")
-      ->check(CLI::IsMember({"auto", "aperture", "mask", "weighted", "psf"}))
+         "aperture, mask (optimal binary), weighted, psf (neighbours fitted too), fit (places too, group by group, "
+         "careful with cosmic rays, saturation and blends), or auto: what suits the scene, and it says why")
+      ->check(CLI::IsMember({"auto", "aperture", "mask", "weighted", "psf", "fit"}))
       ->capture_default_str();
   sub->add_option(
          "--psf", photometry_options.psf,

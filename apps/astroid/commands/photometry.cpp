@@ -13,6 +13,7 @@
 #include "astroid/core/units.hpp"
 #include "astroid/photometry/field_photometry.hpp"
 #include "astroid/photometry/found_stars.hpp"
+#include "astroid/photometry/group_photometry.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "astroid/photometry/phase_errors.hpp"
 #include "astroid/photometry/psf_measurement.hpp"
@@ -115,9 +116,9 @@ void check_options(const PhotometryOptions& options, bool blind) {
         Problem{.parameter = parameter, .value = std::move(value), .expected = expected, .message = message});
   };
   const bool psf = !options.psf.empty();
-  if (blind && (options.method == "mask" || options.method == "weighted"))
+  if (blind && (options.method == "mask" || options.method == "weighted" || options.method == "fit"))
     complain("--method", options.method, "--catalogue FILE, or --method auto, aperture or psf",
-             "masks are for positions that are given");
+             "it is for positions that are given");
   if (options.method != "auto" && options.method != "aperture" && !psf)
     complain("--method", options.method, "--psf measured, --psf FILE or --psf gaussian:SIGMA_PX with it",
              "all but apertures need the PSF");
@@ -260,6 +261,7 @@ class PhotometryRun {
     } else {
       settings.method = method_of(options_.method);
     }
+    if (options_.method == "fit") return fit_groups(frame, sky, settings, record);
     if (!blind_) {
       if (options_.correct_to)
         record.notes.emplace_back("--correct-to was ignored: it is for stars that are found without a catalogue.");
@@ -325,6 +327,19 @@ class PhotometryRun {
     constexpr double kDefault = 2.0;  // px
     scene.neighbours = share_with_neighbours(places, kCrowdedDistance * (std::isfinite(fwhm) ? fwhm : kDefault));
     return scene;
+  }
+
+  std::vector<SourceMeasurement> fit_groups(const Frame& frame, const SkyProjection* sky,
+                                            const ImagePhotometrySettings& settings, PhotometryRecord& record) const {
+    if (!options_.background.empty())
+      record.notes.emplace_back("--background was ignored: a level is fitted under each group of stars.");
+    if (options_.radius) record.notes.emplace_back("--radius was ignored: stars are fitted, in no circles.");
+    GroupPhotometrySettings groups;
+    groups.psf = settings.psf;
+    groups.psf_error = settings.psf_error;
+    groups.map = settings.map;
+    groups.zero_point = settings.zero_point;
+    return measure_groups(frame, sky, requests_, groups);
   }
 
   std::vector<SourceMeasurement> fit_field(const Frame& frame, const SkyProjection* sky,

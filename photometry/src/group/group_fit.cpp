@@ -39,8 +39,8 @@ class Fitter {
     ASTROID_CHECK_EQ(pixels.usable.size(), pixels.box.size());
     fit_.stars.resize(stars.size());
     for (std::size_t k = 0; k < usable_.size(); ++k) {
-      const bool good = std::isfinite(pixels.electrons[k]) && std::isfinite(pixels.variance[k]) &&
-                        pixels.variance[k] > 0.0;
+      const bool good =
+          std::isfinite(pixels.electrons[k]) && std::isfinite(pixels.variance[k]) && pixels.variance[k] > 0.0;
       usable_[k] = usable_[k] != 0 && good ? 1 : 0;
     }
     for (std::size_t i = 0; i < stars.size(); ++i) {
@@ -123,8 +123,8 @@ class Fitter {
       again = false;
       for (std::size_t a = 0; a < members_.size() && !again; ++a)
         for (std::size_t b = a + 1; b < members_.size() && !again; ++b) {
-          const double d = std::hypot(members_[a].place.x - members_[b].place.x,
-                                      members_[a].place.y - members_[b].place.y);
+          const double d =
+              std::hypot(members_[a].place.x - members_[b].place.x, members_[a].place.y - members_[b].place.y);
           if (d < least || d == 0.0) {
             join(a, b);
             any = again = true;
@@ -236,8 +236,7 @@ class Fitter {
     const std::size_t unknowns = (settings_.fit_positions ? 3 : 1) * p.flux.size() + (settings_.fit_background ? 1 : 0);
     fit_.chi2 = used > unknowns ? chi2 / static_cast<double>(used - unknowns) : kNaN;
     fit_.background = p.background;
-    fit_.background_error =
-        settings_.fit_background && covariance_.known ? std::sqrt(covariance_.background) : kNaN;
+    fit_.background_error = settings_.fit_background && covariance_.known ? std::sqrt(covariance_.background) : kNaN;
     ran_.assign(members_.size(), 0);
     constexpr double kAtBound = 0.99;
     for (std::size_t i = 0; i < members_.size(); ++i) {

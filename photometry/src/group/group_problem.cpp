@@ -24,8 +24,8 @@ class Stamps final : public ceres::EvaluationCallback {
  public:
   Stamps(const PixelPsf& psf, const Rectangle& box, const GroupParameters& parameters)
       : psf_(psf), box_(box), parameters_(parameters), stamps_(parameters.flux.size()) {
-    for (Stamp& s : stamps_) s = {std::vector<double>(box.size()), std::vector<double>(box.size()),
-                                  std::vector<double>(box.size())};
+    for (Stamp& s : stamps_)
+      s = {std::vector<double>(box.size()), std::vector<double>(box.size()), std::vector<double>(box.size())};
   }
 
   void PrepareForEvaluation(bool /*jacobians*/, bool /*new_point*/) final {
@@ -159,8 +159,7 @@ bool solve_group(const GroupPixels& pixels, std::span<const double> variance, st
   options.function_tolerance = 1e-9;
   options.parameter_tolerance = 1e-9;
   options.gradient_tolerance = 1e-12;
-  options.linear_solver_type =
-      3 * parameters.flux.size() < kSmall ? ceres::DENSE_QR : ceres::DENSE_NORMAL_CHOLESKY;
+  options.linear_solver_type = 3 * parameters.flux.size() < kSmall ? ceres::DENSE_QR : ceres::DENSE_NORMAL_CHOLESKY;
   ceres::Solver::Summary summary;
   ceres::Solve(options, &group.problem(), &summary);
   return summary.termination_type == ceres::CONVERGENCE;

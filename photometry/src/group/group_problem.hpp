@@ -11,17 +11,17 @@
 namespace astroid::detail {
 
 struct GroupParameters {
-  std::vector<double> flux;                   // e-
-  std::vector<std::array<double, 2>> place;   // px
-  double background = 0.0;                    // e- per pixel
+  std::vector<double> flux;                  // e-
+  std::vector<std::array<double, 2>> place;  // px
+  double background = 0.0;                   // e- per pixel
 };
 
 struct GroupSolve {
   bool positions = true;
   bool background = true;
-  bool robust = false;       ///< a Cauchy loss at `outlier` sigma
-  double outlier = 5.0;      ///< sigma
-  double most_shift = 1.0;   ///< px, from where the stars are now
+  bool robust = false;      ///< a Cauchy loss at `outlier` sigma
+  double outlier = 5.0;     ///< sigma
+  double most_shift = 1.0;  ///< px, from where the stars are now
   int most_iterations = 50;
 };
 
@@ -30,7 +30,7 @@ bool solve_group(const GroupPixels& pixels, std::span<const double> variance, st
                  const PixelPsf& psf, const GroupSolve& solve, GroupParameters& parameters);
 
 struct GroupCovariance {
-  bool known = false;  ///< false: what is asked for cannot be told from these pixels
+  bool known = false;                        ///< false: what is asked for cannot be told from these pixels
   std::vector<std::array<double, 6>> stars;  // FF, Fx, Fy, xx, xy, yy
   double background = 0.0;
 };

@@ -105,7 +105,9 @@ void expect_honest(const std::vector<Source>& truth) {
   EXPECT_NEAR(moments(background).rms, 1.0, 4.0 / std::sqrt(2.0 * n));
 }
 
-TEST(GroupFit, IsHonestAboutAStarAlone) { expect_honest({{10.2, 9.7, 3000.0}}); }
+TEST(GroupFit, IsHonestAboutAStarAlone) {
+  expect_honest({{10.2, 9.7, 3000.0}});
+}
 
 TEST(GroupFit, IsHonestAboutABlendOfHalfAFwhm) {
   expect_honest({{9.5, 10.0, 20000.0}, {9.5 + 0.5 * kFwhm, 10.3, 12000.0}});
@@ -140,8 +142,7 @@ TEST(GroupFit, ReportsBlendsBelowATenthOfAFwhmAsOne) {  // N17
     const std::vector<Source> truth{{10.0, 10.0, 4000.0}, {10.0 + d, 10.0, 6000.0}, {15.5, 5.1, 900.0}};
     std::vector<double> pulls;
     for (std::uint32_t r = 1; r <= 50; ++r) {
-      const std::vector<GroupStar> believed{
-          {{10.0, 10.0}, 4000.0}, {{10.0 + d, 10.0}, 6000.0}, {{15.5, 5.1}, 900.0}};
+      const std::vector<GroupStar> believed{{{10.0, 10.0}, 4000.0}, {{10.0 + d, 10.0}, 6000.0}, {{15.5, 5.1}, 900.0}};
       const GroupFit fit = fit_group(make_pixels(*psf, truth, r), *psf, believed);
       EXPECT_NE(fit.stars[0].flags & measurement_flag::kMerged, 0U);
       EXPECT_NE(fit.stars[1].flags & measurement_flag::kMerged, 0U);
@@ -224,8 +225,8 @@ TEST(GroupFit, FitsTheWingsOfASaturatedStar) {  // N19
 TEST(GroupFit, SaysWhyThereIsNoNumber) {
   const auto psf = make_gaussian_psf(1.0);
   GroupPixels pixels = make_pixels(*psf, {{10.0, 10.0, 1000.0}}, 3);
-  const std::vector<GroupStar> stars{{{10.0, 10.0}, 0.0}, {{400.0, 10.0}, 100.0},
-                                     {{std::numeric_limits<double>::quiet_NaN(), 0.0}, 10.0}};
+  const std::vector<GroupStar> stars{
+      {{10.0, 10.0}, 0.0}, {{400.0, 10.0}, 100.0}, {{std::numeric_limits<double>::quiet_NaN(), 0.0}, 10.0}};
   GroupFit fit = fit_group(pixels, *psf, stars);
   EXPECT_EQ(fit.stars[0].flags, 0U);
   EXPECT_EQ(fit.stars[1].flags, measurement_flag::kOutside);

@@ -46,7 +46,8 @@ TEST(GroupFit, IsTheFieldSolversOracle) {
       group.usable.push_back(1);
     }
   std::vector<GroupStar> stars;
-  for (const detail::ModelStar& star : solver.stars()) stars.push_back({{star.x + 0.05, star.y - 0.05}, 1.1 * star.flux});
+  for (const detail::ModelStar& star : solver.stars())
+    stars.push_back({{star.x + 0.05, star.y - 0.05}, 1.1 * star.flux});
   GroupFitSettings careful;
   careful.fit_background = false;  // the field's sky is taken as it is
   careful.outlier = 20.0;

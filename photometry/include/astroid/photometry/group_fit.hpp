@@ -45,8 +45,8 @@ struct FittedStar {
 };
 
 struct GroupFit {
-  std::vector<FittedStar> stars;  ///< in the order they were given
-  double background = 0.0;        ///< e- per pixel above the believed one
+  std::vector<FittedStar> stars;                                       ///< in the order they were given
+  double background = 0.0;                                             ///< e- per pixel above the believed one
   double background_error = std::numeric_limits<double>::quiet_NaN();  ///< NaN where it was not fitted
   double chi2 = std::numeric_limits<double>::quiet_NaN();              ///< per degree of freedom
   std::size_t outliers = 0;                                            ///< pixels
@@ -54,15 +54,15 @@ struct GroupFit {
 
 /// Fits fluxes, places and background of all stars of a group together.
 ///
-/// Pixels have the variance that the model gives them (as FieldSolver has it), so the fit is that of a quasi-likelihood.
-/// Outliers are found with a Cauchy loss and left out of the last fit, whose covariance is then that of least squares.
-/// Two stars nearer than `merge_distance`, or which the data cannot tell apart (one's error exceeds its flux, and the
-/// other is within a FWHM), are reported as one at their common place, the other as NaN, both with kMerged.
-/// A star that runs farther than a FWHM (at least 1 px), or whose fit does not converge, has kUnsettled.
-/// Never throws for what the pixels hold: a group without enough pixels is NaN with flags.
+/// Pixels have the variance that the model gives them (as FieldSolver has it), so the fit is that of a
+/// quasi-likelihood. Outliers are found with a Cauchy loss and left out of the last fit, whose covariance is then that
+/// of least squares. Two stars nearer than `merge_distance`, or which the data cannot tell apart (one's error exceeds
+/// its flux, and the other is within a FWHM), are reported as one at their common place, the other as NaN, both with
+/// kMerged. A star that runs farther than a FWHM (at least 1 px), or whose fit does not converge, has kUnsettled. Never
+/// throws for what the pixels hold: a group without enough pixels is NaN with flags.
 /// @accuracy  fluxes, places and covariances of the field's solver (test: GroupFit.IsTheFieldSolversOracle)
-/// @complexity O(pixels × stars²) an iteration; a star alone takes about 1 ms   @thread safe
-/// @source F135, F136; Ceres Solver's trust region and covariance
+/// @complexity O(pixels × stars²) an iteration; a star alone takes about 4 ms   @thread safe
+/// @source F147; Ceres Solver's trust region and covariance
 [[nodiscard]] GroupFit fit_group(const GroupPixels& pixels, const PixelPsf& psf, std::span<const GroupStar> stars,
                                  const GroupFitSettings& settings = {});
 
