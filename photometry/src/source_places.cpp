@@ -5,6 +5,7 @@
 
 #include "astroid/core/error.hpp"
 #include "astroid/photometry/estimator.hpp"
+#include "counts.hpp"
 
 namespace astroid::detail {
 
@@ -73,7 +74,7 @@ std::uint32_t pixel_flags_around(const Frame& frame, PixelPosition place, int ha
       }
       const unsigned f = flags.at(x, y);
       if ((f & (pixel_flag::kFullWell | pixel_flag::kAdcSaturated)) != 0U) result |= measurement_flag::kSaturated;
-      if ((f & pixel_flag::kBad) != 0U || !std::isfinite(values.at(x, y))) result |= measurement_flag::kBadPixel;
+      if ((f & pixel_flag::kBad) != 0U || !is_count(values.at(x, y))) result |= measurement_flag::kBadPixel;
     }
   }
   return result;
@@ -81,7 +82,7 @@ std::uint32_t pixel_flags_around(const Frame& frame, PixelPosition place, int ha
 
 bool may_be_fitted(unsigned flags, float value) {
   constexpr unsigned kUnusable = 0xFFU & ~(pixel_flag::kTruth | pixel_flag::kShortRamp);
-  return std::isfinite(value) && (flags & kUnusable) == 0U;
+  return is_count(value) && (flags & kUnusable) == 0U;
 }
 
 }  // namespace astroid::detail

@@ -21,7 +21,7 @@ bool on_frame(PixelPosition place, const Rectangle& area);
 /// kEdge, kSaturated and kBadPixel of the square of half-side `half` px around a place.
 std::uint32_t pixel_flags_around(const Frame& frame, PixelPosition place, int half);
 
-/// Whether a pixel may be fitted to: no flag but those that photometry takes no notice of, and a number.
+/// Whether a pixel may be fitted to: no flag but those that photometry takes no notice of, and a number below 1e12.
 bool may_be_fitted(unsigned flags, float value);
 
 }  // namespace astroid::detail

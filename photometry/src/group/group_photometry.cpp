@@ -109,12 +109,11 @@ class GroupMeasurer {
   double fit(const std::vector<std::size_t>& group) {
     std::vector<GroupStar> stars;
     for (const std::size_t i : group) {
-      stars.push_back(believed_[i]);
       add_light(believed_[i], -1.0);
+      // Where the stars are said to be is where they start from, always.
+      stars.push_back({{sources_[i].x, sources_[i].y}, believed_[i].flux});
     }
     const GroupPixels pixels = cut(stars);
-    // Where the stars are said to be is where they start from, always.
-    for (std::size_t k = 0; k < group.size(); ++k) stars[k].position = {sources_[group[k]].x, sources_[group[k]].y};
     const GroupFit result = fit_group(pixels, psf_, stars, settings_.fit);
     double largest = 0.0;
     for (std::size_t k = 0; k < group.size(); ++k) {
