@@ -30,10 +30,7 @@ FittedStar settle(const FieldSolver& field, std::size_t star) {
   GroupPixels pixels;
   pixels.box = {static_cast<int>(std::floor(centre.x + 0.5)) - half,
                 static_cast<int>(std::floor(centre.y + 0.5)) - half, side, side};
-  // The margin of the planes has no weight; beyond it there is nothing.
-  const auto& plane = field.weight();
-  pixels.box =
-      intersect(pixels.box, {-plane.pad(), -plane.pad(), plane.nx() + 2 * plane.pad(), plane.ny() + 2 * plane.pad()});
+  pixels.box = intersect(pixels.box, {0, 0, field.weight().nx(), field.weight().ny()});
   const std::size_t n = pixels.box.size();
   std::vector<double> light(n, 0.0);
   std::vector<double> stamp(n);

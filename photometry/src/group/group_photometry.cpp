@@ -48,9 +48,10 @@ class GroupMeasurer {
     believed_.assign(sources_.size(), {});
     for (std::size_t i = 0; i < places.size(); ++i) believed_[i] = {places[i], 0.0};
     const auto groups = detail::friends_of_friends(places, kLink * reach_.fwhm(), kMostStars);
+    others_.assign(groups.size(), kNaN);
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
       double largest = 0.0;
-      for (const auto& group : groups) largest = std::max(largest, fit(group));
+      for (std::size_t g = 0; g < groups.size(); ++g) largest = std::max(largest, fit(groups[g], others_[g]));
       constexpr double kSettled = 0.05;  // errors
       if (largest < kSettled) break;
     }
@@ -105,15 +106,24 @@ class GroupMeasurer {
       for (int x = box.x0; x < box.x1(); ++x, ++k) light_.at(x, y) += sign * star.flux * stamp_[k];
   }
 
+  // @param others  [in,out] light of other groups in the pixels when the group was fitted last; NaN: never
   // @returns by how much a flux changed since the last time, in units of its error.
-  double fit(const std::vector<std::size_t>& group) {
+  double fit(const std::vector<std::size_t>& group, double& others) {
     std::vector<GroupStar> stars;
     for (const std::size_t i : group) {
       add_light(believed_[i], -1.0);
       // Where the stars are said to be is where they start from, always.
       stars.push_back({{sources_[i].x, sources_[i].y}, believed_[i].flux});
     }
-    const GroupPixels pixels = cut(stars);
+    double light = 0.0;
+    double variance = 0.0;
+    const GroupPixels pixels = cut(stars, light, variance);
+    constexpr double kNoticed = 0.01;  // of the noise of all the pixels
+    if (std::abs(light - others) < kNoticed * std::sqrt(variance)) {
+      for (const std::size_t i : group) add_light(believed_[i], 1.0);
+      return 0.0;
+    }
+    others = light;
     const GroupFit result = fit_group(pixels, psf_, stars, settings_.fit);
     double largest = 0.0;
     for (std::size_t k = 0; k < group.size(); ++k) {
@@ -131,7 +141,8 @@ class GroupMeasurer {
     return largest;
   }
 
-  [[nodiscard]] GroupPixels cut(const std::vector<GroupStar>& stars) const {
+  // @param light, variance  [out] sums of the light of others and of the noise
+  [[nodiscard]] GroupPixels cut(const std::vector<GroupStar>& stars, double& light, double& variance) const {
     const int half = reach_.core() + static_cast<int>(std::ceil(reach_.fwhm()));
     Rectangle box = stamp_box(stars.front().position, half);
     for (const GroupStar& star : stars) {
@@ -150,6 +161,8 @@ class GroupMeasurer {
         const auto k = static_cast<std::size_t>(y - area_.y0) * static_cast<std::size_t>(area_.nx) +
                        static_cast<std::size_t>(x - area_.x0);
         const double others = light_.at(x, y);
+        light += std::abs(others);
+        variance += variance_[k];
         pixels.electrons.push_back(electrons_[k] - others);
         pixels.variance.push_back(variance_[k] + std::max(0.0, others));
         pixels.usable.push_back(usable_[k]);
@@ -201,6 +214,7 @@ class GroupMeasurer {
   std::vector<char> usable_;
   std::vector<GroupStar> believed_;
   std::vector<FittedStar> fitted_;
+  std::vector<double> others_;
   std::vector<double> chi2_;
   std::vector<double> sky_;
   std::vector<double> stamp_;

@@ -122,7 +122,8 @@ TEST(Centroid, OfASymmetricBloomIsInTheRowWhereTheStarIs) {  // N19
 }
 
 TEST(Centroid, OfAStarThatBledToOneSideIsBiasedTheMoreTheMoreItBled) {  // N19
-  // Light that is only clipped has a centroid that wanders by a hundredth of a pixel; charge that bled moves it for good.
+  // Light that is only clipped has a centroid that wanders by a hundredth of a pixel; charge that bled moves it for
+  // good.
   constexpr double kFullWell = 3e4;
   double last = 0.0;
   for (const double flux : {3e5, 5e5, 8e5, 1.2e6}) {

@@ -1,5 +1,5 @@
-// Ten thousand random stamps that no one should have to measure: nothing crashes, no number is missing without a flag, and
-// no flag is set without a reason.
+// Ten thousand random stamps that no one should have to measure: nothing crashes, no number is missing without a flag,
+// and no flag is set without a reason.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -91,7 +91,8 @@ Stamp make_stamp(std::uint64_t seed) {
   // Nowhere and beyond.
   if (dice.one_in(6)) {
     const double places[] = {std::numeric_limits<double>::quiet_NaN(), 1e300, -1e9, -0.5, nx - 0.5};
-    stamp.requests.push_back({.id = "odd", .pixel = PixelPosition{places[dice.below(5)], dice.between(0.0, ny)}, .sky = {}});
+    stamp.requests.push_back(
+        {.id = "odd", .pixel = PixelPosition{places[dice.below(5)], dice.between(0.0, ny)}, .sky = {}});
   }
   const auto any = [&] { return static_cast<std::size_t>(dice.below(static_cast<int>(pixels.size()))); };
   switch (dice.below(14)) {
@@ -155,8 +156,8 @@ void describe(Stamp& stamp) {
   }
   for (const SourceRequest& a : stamp.requests)
     for (const SourceRequest& b : stamp.requests)
-      stamp.coincident = stamp.coincident ||
-                         (&a != &b && std::hypot(a.pixel->x - b.pixel->x, a.pixel->y - b.pixel->y) < 6.0 * kSigma);
+      stamp.coincident =
+          stamp.coincident || (&a != &b && std::hypot(a.pixel->x - b.pixel->x, a.pixel->y - b.pixel->y) < 6.0 * kSigma);
 }
 
 void expect_flags_with_reasons(const Stamp& stamp, const SourceMeasurement& s, int reach) {
@@ -245,21 +246,23 @@ TEST(NastyStamps, InFitsOfGroups) {
 
 TEST(NastyStamps, InFieldsWithoutACatalogue) {
   const auto psf = make_gaussian_psf(kSigma);
-  for (std::uint64_t seed = 0; seed < kStamps; ++seed) {
+  constexpr std::uint64_t kStep = 4;  // a field takes ten times as long as its circles
+  for (std::uint64_t seed = 0; seed < kStamps; seed += kStep) {
     Stamp stamp = make_stamp(seed);
     describe(stamp);
     SCOPED_TRACE("seed " + std::to_string(seed));
     for (const SourceMeasurement& s : measure_field(stamp.frame, nullptr, *psf, {})) {
       expect_no_silent_nan(s);
       expect_flags_with_reasons(stamp, s, kReach);
-      EXPECT_TRUE(std::isfinite(s.flux) && std::isfinite(s.flux_err) && s.flux_err > 0.0) << s.flux << " ± " << s.flux_err;
+      EXPECT_TRUE(std::isfinite(s.flux) && std::isfinite(s.flux_err) && s.flux_err > 0.0)
+          << s.flux << " ± " << s.flux_err;
     }
     FoundStarsSettings find;
     for (const SourceMeasurement& s : measure_found_stars(stamp.frame, nullptr, find).sources) {
       expect_no_silent_nan(s);
       expect_flags_with_reasons(stamp, s, kReach);
     }
-    if (seed % 10 == 0) {
+    if (seed % (10 * kStep) == 0) {
       try {
         (void)measure_psf(stamp.frame);
       } catch (const InputError&) {
@@ -284,7 +287,8 @@ TEST(NastyStamps, HaveCentroidsOrFlags) {
     if (known) {
       EXPECT_GE(c.position.x, -1e-9);
       EXPECT_LE(c.position.x, pixels.box.nx - 1 + 1e-9);
-      EXPECT_TRUE(pixels.box.size() < 2 || c.covariance[0] >= 0.0 || (c.flags & measurement_flag::kBadPixel) != 0U) << seed;
+      EXPECT_TRUE(pixels.box.size() < 2 || c.covariance[0] >= 0.0 || (c.flags & measurement_flag::kBadPixel) != 0U)
+          << seed;
     }
   }
 }

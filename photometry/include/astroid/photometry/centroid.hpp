@@ -14,12 +14,11 @@ namespace astroid {
 /// NaN where there is none; `flags` says why.
 struct Centroid {
   PixelPosition position{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};
-  std::array<double, 3> covariance{std::numeric_limits<double>::quiet_NaN(),
-                                   std::numeric_limits<double>::quiet_NaN(),
+  std::array<double, 3> covariance{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN(),
                                    std::numeric_limits<double>::quiet_NaN()};  ///< xx, xy, yy, px²
-  double flux = 0.0;         ///< e-, weighted sum
-  std::uint32_t flags = 0;  ///< kNoFlux: the sum is not positive, or its light is on both sides of zero so that the place
-                            ///< is beyond the pixels; kBadPixel: pixels were left out, which biases a centroid
+  double flux = 0.0;                                                           ///< e-, weighted sum
+  std::uint32_t flags = 0;  ///< kNoFlux: the sum is not positive, or its light is on both sides of zero so that the
+                            ///< place is beyond the pixels; kBadPixel: pixels were left out, which biases a centroid
 };
 
 /// C = Σ w x I / Σ w I over the usable pixels, covariance Σ w² (x - C)(x - C)ᵀ V / (Σ w I)², V the variance of a pixel
