@@ -160,6 +160,11 @@ int run_command_line(int argc, char** argv) {
   sub->add_option("--phase-errors", photometry_options.phase_errors,
                   "write what the PSF leaves of bright stars against their place within a pixel")
       ->type_name("FILE");
+  sub->add_option("--artificial-stars", photometry_options.artificial_stars,
+                  "add so many stars of known flux to copies of the image, measure again, and write completeness and "
+                  "errors against magnitude beside the output, in *_completeness.csv")
+      ->check(CLI::Range(1, 10000000))
+      ->type_name("N");
   sub->add_option("--gain", photometry_options.gain, "if the header does not say it")->type_name("E-/ADU");
   sub->add_option("--read-noise", photometry_options.read_noise, "if the header does not say it")->type_name("E-");
   sub->add_flag("--ignore-overscan", photometry_options.ignore_overscan,

@@ -68,7 +68,8 @@ struct PhotometryOptions {
   std::optional<double> clip;   ///< sigma, of the annulus; 0: the plain median
   std::string residual;         ///< file; empty: none
   std::string psf_output;       ///< file of the measured PSF; empty: none
-  std::string phase_errors;     ///< file; empty: none
+  std::optional<std::size_t> artificial_stars;  ///< to add, to see how many come back
+  std::string phase_errors;                     ///< file; empty: none
   std::string output = "sources.csv";
   bool overwrite = false;
 };

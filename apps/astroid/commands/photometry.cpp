@@ -10,7 +10,10 @@
 #include "astroid/core/csv.hpp"
 #include "astroid/core/effective_psf.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/math.hpp"
+#include "astroid/core/photometric.hpp"
 #include "astroid/core/units.hpp"
+#include "astroid/photometry/artificial_stars.hpp"
 #include "astroid/photometry/field_photometry.hpp"
 #include "astroid/photometry/found_stars.hpp"
 #include "astroid/photometry/group_photometry.hpp"
@@ -128,6 +131,9 @@ void check_options(const PhotometryOptions& options, bool blind) {
              "there is no annulus around stars that are found on a mesh");
   if (!options.psf_output.empty() && psf && options.psf != kMeasured)
     complain("--psf-output", options.psf_output, "--psf measured with it", "the PSF is given, and none is measured");
+  if (options.artificial_stars && !blind)
+    complain("--artificial-stars", fmt::format("{}", *options.artificial_stars), "no --catalogue with it",
+             "positions are given, and nothing is looked for");
   if (options.threshold && !(*options.threshold > 0.0))
     complain("--threshold", fmt::format("{}", *options.threshold), "more than 0", "everything would be a star");
   if (options.threshold && !blind)
@@ -171,7 +177,10 @@ class PhotometryRun {
     const std::filesystem::path residual = optional(options_.residual);
     const std::filesystem::path psf_output = optional(options_.psf_output);
     const std::filesystem::path phases = optional(options_.phase_errors);
-    for (const std::filesystem::path& file : {output, residual, psf_output, phases})
+    const std::filesystem::path completeness =
+        options_.artificial_stars ? output.parent_path() / (output.stem().string() + "_completeness.csv")
+                                  : std::filesystem::path();
+    for (const std::filesystem::path& file : {output, residual, psf_output, phases, completeness})
       if (!file.empty() && std::filesystem::exists(file) && !options_.overwrite)
         throw InputError(
             Problem{.file = file.string(), .expected = "another FILE, or --overwrite", .message = "the file exists"});
@@ -200,6 +209,7 @@ class PhotometryRun {
       record.flagged += source.flags != 0 ? 1 : 0;
     }
     record.sources = sources.size();
+    if (!completeness.empty()) test_completeness(file.frame, *map, settings, completeness, record);
     for (const std::string& note : record.notes) fmt::print(stderr, "{}: {}\n", image, note);
     write_table(output, sources, record);
     if (!residual.empty() || !phases.empty()) {
@@ -238,12 +248,7 @@ class PhotometryRun {
     record.method = options_.method;
     std::optional<FoundStars> found;
     if (blind_ && options_.method != "psf") {
-      FoundStarsSettings find;
-      find.detection.psf = settings.psf.get();
-      if (options_.threshold) find.detection.threshold = *options_.threshold;
-      find.measure = settings;
-      if (options_.radius) find.radius = Pixels(*options_.radius);
-      if (options_.correct_to) find.correct_to = Pixels(*options_.correct_to);
+      FoundStarsSettings find = find_settings(settings);
       if (options_.method == "auto" && settings.psf) {
         // Only how crowded it is matters.
         find.correct = false;
@@ -293,6 +298,53 @@ class PhotometryRun {
       choice.why = fmt::format("{}; but it could not be ({}), so circles", choice.why,
                                error.problems().empty() ? "unknown" : error.problems().front().value);
     }
+  }
+
+  // With the method and the PSF that the image itself was measured with.
+  void test_completeness(const Frame& frame, const BackgroundMap& map, const ImagePhotometrySettings& settings,
+                         const std::filesystem::path& file, PhotometryRecord& record) const {
+    const std::shared_ptr<const PixelPsf> psf = settings.psf ? settings.psf : gaussian_of(record.fwhm);
+    // The error of a lone faint star: a Gaussian of that width has 4 pi sigma² noise pixels.
+    constexpr double kDefault = 2.0;  // px
+    const double fwhm = std::isfinite(record.fwhm) && record.fwhm > 0.0 ? record.fwhm : kDefault;
+    const double sigma = fwhm / kFwhmPerSigma;
+    const double noise =
+        frame.header.gain.value() * map.median_rms() * std::sqrt(4.0 * kPi * (sigma * sigma + 1.0 / 12.0));
+    constexpr double kFaintest = 2.0;  // errors
+    constexpr double kBrightest = 300.0;
+    ArtificialStarSettings stars;
+    stars.stars = *options_.artificial_stars;
+    stars.faintest = kFaintest * std::max(1.0, noise);
+    stars.brightest = kBrightest * std::max(1.0, noise);
+    stars.spacing = std::max(12.0, 6.0 * fwhm);
+    stars.match = std::max(1.0, 0.5 * fwhm);
+    const std::vector<CompletenessBin> bins = add_artificial_stars(frame, *psf, stars, [&](const Frame& added) {
+      if (settings.method == PhotometryMethod::kPsf) {
+        PhotometryRecord silent;
+        return fit_field(added, nullptr, settings, silent);
+      }
+      ImagePhotometrySettings again = settings;
+      again.map = std::make_shared<const BackgroundMap>(added, 0, settings.mesh);
+      return measure_found_stars(added, nullptr, find_settings(again)).sources;
+    });
+    write_completeness(file, bins, settings.zero_point, frame.header.exposure_time);
+    const double limit = completeness_limit(bins, 0.5);
+    const auto magnitude = std::isfinite(limit)
+                               ? magnitude_of(Electrons(limit) / frame.header.exposure_time, settings.zero_point)
+                               : std::nullopt;
+    record.notes.push_back(magnitude ? fmt::format("Of added stars of magnitude {:.2f} half come back ({}).",
+                                                   magnitude->value(), file.string())
+                                     : fmt::format("Added stars do not say where half come back ({}).", file.string()));
+  }
+
+  FoundStarsSettings find_settings(const ImagePhotometrySettings& settings) const {
+    FoundStarsSettings find;
+    find.detection.psf = settings.psf.get();
+    if (options_.threshold) find.detection.threshold = *options_.threshold;
+    find.measure = settings;
+    if (options_.radius) find.radius = Pixels(*options_.radius);
+    if (options_.correct_to) find.correct_to = Pixels(*options_.correct_to);
+    return find;
   }
 
   static std::string text_of(const FoundStars& found) {

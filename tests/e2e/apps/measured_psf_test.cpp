@@ -69,8 +69,13 @@ TEST_F(MeasuredPsfCommand, WritesAPsfThatMeasuresTheSameAgain) {
 TEST_F(MeasuredPsfCommand, IsWhatAutoDoesInACrowdWithoutOne) {
   write_image(folder_.path() / "crowd.fits",
               test::make_star_field({.nx = 200, .ny = 200, .stars = 570, .slope = 0.25, .seed = 4}));
-  test::ProgramResult run = test::run_astroid({"photometry", "crowd.fits", "-o", "crowd.csv"}, folder_.path());
+  const test::ProgramResult run =
+      test::run_astroid({"photometry", "crowd.fits", "--artificial-stars", "60", "-o", "crowd.csv"}, folder_.path());
   ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("dded stars"));
+  double added = 0.0;
+  for (const double n : test::read_csv(folder_.path() / "crowd_completeness.csv").numbers("added")) added += n;
+  EXPECT_EQ(added, 60.0);
   EXPECT_THAT(run.out, HasSubstr("method psf: no PSF was given, but"));
   EXPECT_THAT(contents(folder_.path() / "crowd.csv.json"), HasSubstr("\"method\": \"psf\""));
 }
