@@ -167,6 +167,9 @@ int run_command_line(int argc, char** argv) {
       ->type_name("N");
   sub->add_option("--gain", photometry_options.gain, "if the header does not say it")->type_name("E-/ADU");
   sub->add_option("--read-noise", photometry_options.read_noise, "if the header does not say it")->type_name("E-");
+  sub->add_option("--bias", photometry_options.bias,
+                  "pedestal without photon noise, if neither header nor prescan says it (default: 0)")
+      ->type_name("ADU");
   sub->add_flag("--ignore-overscan", photometry_options.ignore_overscan,
                 "do not subtract what OVERSCAN extensions show from the columns of the image");
   sub->add_option("--saturation", photometry_options.saturation, "if the header does not say it")->type_name("ADU");

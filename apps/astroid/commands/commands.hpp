@@ -62,7 +62,7 @@ struct PhotometryOptions {
   std::string method = "auto";
   std::string psf;  ///< file, gaussian:SIGMA_PX or measured
   bool ignore_overscan = false;
-  std::optional<double> radius, correct_to, threshold, gain, read_noise, saturation, zero_point, exposure_time;
+  std::optional<double> radius, correct_to, threshold, gain, read_noise, bias, saturation, zero_point, exposure_time;
   std::string background;       ///< local, mesh or a number of ADU; empty: local, or mesh where stars are found
   std::vector<double> annulus;  ///< inner and outer radius, px; empty: the default
   std::optional<double> clip;   ///< sigma, of the annulus; 0: the plain median

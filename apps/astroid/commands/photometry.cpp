@@ -163,6 +163,7 @@ class PhotometryRun {
       settings_.annulus_clip = *options.clip == 0.0 ? std::numeric_limits<double>::infinity() : *options.clip;
     if (options.gain) read_.gain = Gain(*options.gain);
     if (options.read_noise) read_.readout_noise = Electrons(*options.read_noise);
+    if (options.bias) read_.bias = Adu(*options.bias);
     if (options.saturation) read_.saturation = Adu(*options.saturation);
     read_.use_overscan = !options.ignore_overscan;
     if (options.exposure_time) read_.exposure_time = Seconds(*options.exposure_time);
@@ -202,6 +203,7 @@ class PhotometryRun {
     record.seconds_measuring = std::chrono::duration<double>(std::chrono::steady_clock::now() - was_read).count();
     record.gain = file.frame.header.gain.value();
     record.readout_noise = file.frame.header.readout_noise.value();
+    record.bias = file.frame.header.bias.value();
     record.background = map->median_level();
     record.background_rms = map->median_rms();
     for (const SourceMeasurement& source : sources) {

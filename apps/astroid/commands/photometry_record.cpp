@@ -17,6 +17,7 @@ std::vector<FitsCard> cards_of(const PhotometryRecord& record) {
           {"METHOD", record.method, "of photometry"},
           {"GAIN", record.gain, "e-/ADU"},
           {"RDNOISE", record.readout_noise, "e-, 0: that of the sky stands for it"},
+          {"BIAS", record.bias, "ADU"},
           {"SKYLEVEL", record.background, "ADU, median of the mesh"},
           {"SKYRMS", record.background_rms, "ADU, of a pixel"},
           {"FWHM", record.fwhm, "px, of stars in the image"},
@@ -47,6 +48,7 @@ void write_table(const std::filesystem::path& output, std::span<const SourceMeas
   json["why"] = record.why;
   json["gain"] = number(record.gain);
   json["readout_noise"] = number(record.readout_noise);
+  json["bias"] = number(record.bias);
   json["background"] = number(record.background);
   json["background_rms"] = number(record.background_rms);
   json["fwhm"] = number(record.fwhm);

@@ -19,6 +19,7 @@ struct PhotometryRecord {
   std::string why;                                           ///< one sentence
   double gain = 0.0;                                         ///< e-/ADU
   double readout_noise = 0.0;                                ///< e-; 0: that of the background stands for it
+  double bias = 0.0;                                         ///< ADU
   double background = 0.0;                                   ///< ADU, median of the mesh
   double background_rms = 0.0;                               ///< ADU, of a pixel
   double fwhm = std::numeric_limits<double>::quiet_NaN();    ///< px, measured in the image

@@ -122,8 +122,9 @@ struct ImageFile {
 /// Gain: EGAIN, GAIN, CCDGAIN, ATODGAIN, GAINEFF, GAIN1, else 1 e-/ADU; an image with BUNIT of electrons has gain 1,
 /// one of electrons per second its exposure time. Readout noise (e-): RDNOISE, READNOIS, RON, READNOISE, RDNOISE1,
 /// RDNOIS1, else 0. Exposure time (s): EXPTIME, EXPOSURE, ITIME, INT_TIME, else 1. Saturation (ADU): SATURATE,
-/// SATLEVEL, else the largest number of an integer image. Pixels that are not finite get pixel_flag::kBad, those at or
-/// above the saturation kAdcSaturated.
+/// SATLEVEL, else the largest number of an integer image. Bias (ADU), on top of which light and its noise are: the mean
+/// of PRESCAN extensions, else BIAS where its comment gives the unit [adu], else 0. Pixels that are not finite get
+/// pixel_flag::kBad, those at or above the saturation kAdcSaturated.
 /// @throws InputError naming the file and what is wrong; EnvironmentError when it cannot be read.
 ImageFile read_frame(const std::filesystem::path& path, const FrameReadOptions& options = {});
 
