@@ -6,8 +6,6 @@
 #include <filesystem>
 #include <limits>
 
-#include "astroid/catalogues/catalogue_reader.hpp"
-#include "astroid/core/csv.hpp"
 #include "astroid/core/effective_psf.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
@@ -24,132 +22,20 @@
 #include "astroid/photometry/scene_choice.hpp"
 #include "commands/commands.hpp"
 #include "commands/configuration.hpp"
+#include "commands/photometry_options.hpp"
 #include "commands/photometry_record.hpp"
 
 namespace astroid::commands {
 
 namespace {
 
-constexpr std::string_view kGaussian = "gaussian:";
-constexpr std::string_view kMeasured = "measured";
-
-/// gaussian:SIGMA_PX or a FITS file; nothing without --psf, or where the image is to tell it.
-std::shared_ptr<const PixelPsf> read_psf(const std::string& text) {
-  if (text.empty() || text == kMeasured) return nullptr;
-  if (text.starts_with(kGaussian)) {
-    const std::optional<double> sigma = parse_number(text.substr(kGaussian.size()));
-    if (!sigma)
-      throw InputError(Problem{.parameter = "--psf",
-                               .value = text,
-                               .expected = "gaussian:SIGMA_PX, such as gaussian:0.8",
-                               .message = "the width is not a number"});
-    return make_gaussian_psf(*sigma);
-  }
-  if (is_effective_psf(text)) return make_effective_psf(read_effective_psf(text));
-  constexpr double kPpm = 1e-6;
-  return make_prf_psf(read_psf_table(text), kPpm);
-}
-
-void set_background(const std::string& text, bool blind, ImagePhotometrySettings& settings) {
-  if (text.empty()) {
-    settings.background = blind ? BackgroundMethod::kMesh : BackgroundMethod::kLocal;
-  } else if (text == "local") {
-    settings.background = BackgroundMethod::kLocal;
-  } else if (text == "mesh") {
-    settings.background = BackgroundMethod::kMesh;
-  } else if (const std::optional<double> level = parse_number(text)) {
-    settings.background = BackgroundMethod::kKnown;
-    settings.known_background = Adu(*level);
-  } else {
-    throw InputError(Problem{.parameter = "--background",
-                             .value = text,
-                             .expected = "local, mesh, or a number",
-                             .message = "is none of them"});
-  }
-}
-
-/// Positions of any catalogue; magnitudes are not needed.
-std::vector<SourceRequest> read_requests(const std::string& file) {
-  const StarCatalogue catalogue = read_catalogue(file, {.positions_only = true, .check_unit = false});
-  std::vector<SourceRequest> requests;
-  for (const CatalogueStar& star : catalogue.stars) {
-    SourceRequest request{.id = star.id, .pixel = {}, .sky = {}};
-    if (catalogue.positions == PositionKind::kPixel) {
-      request.pixel = star.pixel;
-    } else {
-      request.sky = star.sky;
-    }
-    requests.push_back(std::move(request));
-  }
-  return requests;
-}
-
-/// FILE for one image; FILE_IMAGE for each of several.
-std::filesystem::path output_for(const PhotometryOptions& options, const std::string& file, const std::string& image) {
-  if (options.images.size() == 1) return file;
-  const std::filesystem::path output = file;
-  return output.parent_path() / fmt::format("{}_{}{}", output.stem().string(),
-                                            std::filesystem::path(image).stem().string(), output.extension().string());
-}
-
-PhotometryMethod method_of(const std::string& name) {
-  if (name == "mask") return PhotometryMethod::kMask;
-  if (name == "weighted") return PhotometryMethod::kWeighted;
-  return name == "psf" ? PhotometryMethod::kPsf : PhotometryMethod::kAperture;
-}
-
-std::string name_of(PhotometryMethod method) {
-  switch (method) {
-    case PhotometryMethod::kMask:
-      return "mask";
-    case PhotometryMethod::kWeighted:
-      return "weighted";
-    case PhotometryMethod::kPsf:
-      return "psf";
-    default:
-      return "aperture";
-  }
-}
-
-void check_options(const PhotometryOptions& options, bool blind) {
-  std::vector<Problem> problems;
-  const auto complain = [&problems](const char* parameter, std::string value, const char* expected,
-                                    const char* message) {
-    problems.push_back(
-        Problem{.parameter = parameter, .value = std::move(value), .expected = expected, .message = message});
-  };
-  const bool psf = !options.psf.empty();
-  if (blind && (options.method == "mask" || options.method == "weighted" || options.method == "fit"))
-    complain("--method", options.method, "--catalogue FILE, or --method auto, aperture or psf",
-             "it is for positions that are given");
-  if (options.method != "auto" && options.method != "aperture" && !psf)
-    complain("--method", options.method, "--psf measured, --psf FILE or --psf gaussian:SIGMA_PX with it",
-             "all but apertures need the PSF");
-  const bool local = options.background == "local" || (options.background.empty() && !blind);
-  if (!local && (!options.annulus.empty() || options.clip))
-    complain("--annulus, --clip", "", "--background local with it",
-             "there is no annulus around stars that are found on a mesh");
-  if (!options.psf_output.empty() && psf && options.psf != kMeasured)
-    complain("--psf-output", options.psf_output, "--psf measured with it", "the PSF is given, and none is measured");
-  if (options.artificial_stars && !blind)
-    complain("--artificial-stars", fmt::format("{}", *options.artificial_stars), "no --catalogue with it",
-             "positions are given, and nothing is looked for");
-  if (options.threshold && !(*options.threshold > 0.0))
-    complain("--threshold", fmt::format("{}", *options.threshold), "more than 0", "everything would be a star");
-  if (options.threshold && !blind)
-    complain("--threshold", fmt::format("{}", *options.threshold), "no --catalogue with it",
-             "positions are given, and nothing is looked for");
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
 class PhotometryRun {
  public:
   explicit PhotometryRun(const PhotometryOptions& options) : options_(options), blind_(options.catalogue.empty()) {
     std::vector<std::string> inputs = options.images;
     if (!blind_) inputs.push_back(options.catalogue);
-    if (!options.psf.empty() && options.psf != kMeasured && !options.psf.starts_with(kGaussian))
-      inputs.push_back(options.psf);
-    check_options(options, blind_);
+    if (names_a_file(options.psf)) inputs.push_back(options.psf);
+    check_options(options);
     require_files(inputs);
     settings_.psf = read_psf(options.psf);
     if (options.radius) settings_.aperture_radius = Pixels(*options.radius);
@@ -171,9 +57,9 @@ class PhotometryRun {
   }
 
   void measure(const std::string& image) {
-    const std::filesystem::path output = output_for(options_, options_.output, image);
+    const std::filesystem::path output = output_for(options_.images.size(), options_.output, image);
     const auto optional = [&](const std::string& name) {
-      return name.empty() ? std::filesystem::path() : output_for(options_, name, image);
+      return name.empty() ? std::filesystem::path() : output_for(options_.images.size(), name, image);
     };
     const std::filesystem::path residual = optional(options_.residual);
     const std::filesystem::path psf_output = optional(options_.psf_output);
@@ -198,7 +84,7 @@ class PhotometryRun {
     ImagePhotometrySettings settings = settings_;
     settings.map = map;
     std::optional<MeasuredPsf> measured;
-    if (options_.psf == kMeasured) measured = use_measured_psf(file.frame, settings, record);
+    if (is_measured(options_.psf)) measured = use_measured_psf(file.frame, settings, record);
     const std::vector<SourceMeasurement> sources = measure_sources(file.frame, sky, settings, measured, record);
     record.seconds_measuring = std::chrono::duration<double>(std::chrono::steady_clock::now() - was_read).count();
     record.gain = file.frame.header.gain.value();

@@ -42,8 +42,7 @@ inline constexpr std::uint32_t kSpoiltBackground = 1U << 7;  ///< background pix
 inline constexpr std::uint32_t kBlended = 1U << 8;     ///< PSF weights can't tell the star from its neighbours well
 inline constexpr std::uint32_t kMerged = 1U << 9;      ///< two stars that cannot be told apart are measured as one
 inline constexpr std::uint32_t kUnsettled = 1U << 10;  ///< the fit did not converge, or ran away: flux may be wrong
-inline constexpr std::uint32_t kOutlier = 1U
-                                          << 11;  ///< pixels near the star were left out: a cosmic ray, or another star
+inline constexpr std::uint32_t kOutlier = 1U << 11;    ///< pixels near the star were left out of the fit
 }  // namespace measurement_flag
 
 /// A star as the ground believes it to be.
