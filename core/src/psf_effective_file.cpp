@@ -94,10 +94,11 @@ EffectivePsf read_effective_psf(const std::filesystem::path& file) {
   constexpr double kSmallest = 1e-3;  // px
   psf.field_scale.x = keywords.number("FIELDSX", kSmallest, kFarthest, "a positive number of pixels");
   psf.field_scale.y = keywords.number("FIELDSY", kSmallest, kFarthest, "a positive number of pixels");
+  constexpr std::int64_t kMostSide = std::int64_t{10} * kMostSamples;
   const auto& axes = fits.units().front().axes;
   const std::int64_t terms = axes.size() > 2 ? axes[2] : 1;
   const bool square = axes.size() >= 2 && axes.size() <= 3 && axes[0] == axes[1] && axes[0] % 2 == 1 && axes[0] > 2 &&
-                      axes[0] < kMostSamples * 10 && terms == static_cast<std::int64_t>(psf.terms());
+                      axes[0] < kMostSide && terms == static_cast<std::int64_t>(psf.terms());
   if (!square) {
     keywords.refuse("NAXIS", fits.units().front().text(),
                     fmt::format("planes with as many columns as rows, an odd number, and {} of them", psf.terms()));

@@ -25,7 +25,8 @@ std::vector<PhaseError> phase_errors(const Image<float, unit::Adu>& residual, Ga
   const auto n = static_cast<double>(cells);
   for (std::size_t i = 0; i < errors.size(); ++i) {
     errors[i].phase_x = (static_cast<double>(i % cells) + 0.5) / n - 0.5;
-    errors[i].phase_y = (static_cast<double>(i / cells) + 0.5) / n - 0.5;
+    const std::size_t row = i / cells;
+    errors[i].phase_y = (static_cast<double>(row) + 0.5) / n - 0.5;
   }
   const double noise = gain.value() * background_rms;
   for (const SourceMeasurement& source : sources) {

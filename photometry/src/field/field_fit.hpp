@@ -34,7 +34,7 @@ class FieldFit {
   std::size_t add_from_residuals();
   std::size_t add_companions();
   bool accept(const Peak& peak);
-  [[nodiscard]] bool may_be_psf_error(double x, double y, double flux) const;
+  [[nodiscard]] bool may_be_psf_error(const Peak& peak) const;
   [[nodiscard]] bool was_refused(const Peak& peak) const;
 
   const FieldFitSettings& settings_;

@@ -48,10 +48,11 @@ double guess_sigma(const FieldPixels& pixels) {
       if (!(peak > kPeak * noise)) continue;
       std::array<double, 9> values{};
       bool good = true;
+      std::size_t k = 0;
       for (int j = -1; j <= 1; ++j)
         for (int i = -1; i <= 1; ++i) {
           good = good && *pixels.usable.at(x + i, y + j) > 0.0F;
-          values[static_cast<std::size_t>(3 * (j + 1) + i + 1)] = *pixels.electrons.at(x + i, y + j) - sky;
+          values[k++] = *pixels.electrons.at(x + i, y + j) - sky;
         }
       if (!good || std::ranges::max(values) > peak) continue;
       const double least = kShoulder * noise;

@@ -21,11 +21,17 @@ double share(double from, double to, double sigma) {
 }
 
 // A Gaussian integrated over pixels; terms after the first widen it to the right and to the top.
-EffectivePsf gaussian(double sigma, int samples, int half, int order) {
+struct Grid {
+  int samples, half, order;
+};
+
+EffectivePsf gaussian(double sigma, const Grid& grid) {
+  const int samples = grid.samples;
+  const int half = grid.half;
   EffectivePsf psf;
   psf.samples_per_pixel = samples;
   psf.half = half;
-  psf.order = order;
+  psf.order = grid.order;
   psf.field_centre = {100.0, 50.0};
   psf.field_scale = {100.0, 50.0};
   const auto plane = [&](double s) {
@@ -53,7 +59,7 @@ EffectivePsf gaussian(double sigma, int samples, int half, int order) {
 // Largest error of a Gaussian of 1 px on a grid of that many samples per pixel, of its peak.
 double error_of(int samples) {
   constexpr double kSigma = 1.0;
-  const auto psf = make_effective_psf(gaussian(kSigma, samples, 7 * samples, 0));
+  const auto psf = make_effective_psf(gaussian(kSigma, {samples, 7 * samples, 0}));
   const double peak = share(-0.5, 0.5, kSigma) * share(-0.5, 0.5, kSigma);
   const Rectangle box{-5, -5, 11, 11};
   std::vector<double> values(box.size());
@@ -83,7 +89,7 @@ TEST(EffectivePsf, IsAGaussianToAPerMilleOfItsPeakAndConvergesWithTheFourthPower
 
 TEST(EffectivePsf, HasTheSlopesOfItsValues) {
   for (const int order : {0, 1, 2}) {
-    const auto psf = make_effective_psf(gaussian(0.9, 3, 18, order));
+    const auto psf = make_effective_psf(gaussian(0.9, {3, 18, order}));
     const Rectangle box{120, 60, 9, 7};
     const PixelPosition place{123.83, 62.41};
     std::vector<double> above(box.size());
@@ -102,7 +108,7 @@ TEST(EffectivePsf, HasTheSlopesOfItsValues) {
 }
 
 TEST(EffectivePsf, HasTheSameBitsInAnyBox) {
-  const auto psf = make_effective_psf(gaussian(0.8, 2, 10, 2));
+  const auto psf = make_effective_psf(gaussian(0.8, {2, 10, 2}));
   const Rectangle large{20, 30, 25, 21};
   std::vector<double> all(large.size());
   const PixelPosition place{31.4, 40.9};
@@ -117,7 +123,7 @@ TEST(EffectivePsf, HasTheSameBitsInAnyBox) {
 }
 
 TEST(EffectivePsf, IsZeroFarAwayAndUnknownNowhere) {
-  const auto psf = make_effective_psf(gaussian(0.8, 2, 10, 1));
+  const auto psf = make_effective_psf(gaussian(0.8, {2, 10, 1}));
   const Rectangle box{0, 0, 5, 5};
   std::vector<double> values(box.size(), 7.0);
   for (const PixelPosition place : {PixelPosition{1e4, 2.0}, PixelPosition{2.0, -40.0}, PixelPosition{1e300, 1e300}}) {
@@ -129,7 +135,7 @@ TEST(EffectivePsf, IsZeroFarAwayAndUnknownNowhere) {
 }
 
 TEST(EffectivePsf, VariesAsItsPolynomialsAndIsHeldBeyondTheField) {
-  const EffectivePsf psf = gaussian(0.8, 2, 10, 2);
+  const EffectivePsf psf = gaussian(0.8, {2, 10, 2});
   double phi[6];
   field_terms(psf, {150.0, 25.0}, phi);
   const double expected[6]{1.0, 0.5, -0.5, 0.25, -0.25, 0.25};
@@ -157,13 +163,13 @@ TEST(EffectivePsf, HasWeightsThatAddUpToOne) {
 }
 
 TEST(EffectivePsf, RefusesWhatIsNoPsf) {
-  EffectivePsf psf = gaussian(0.8, 2, 10, 1);
+  EffectivePsf psf = gaussian(0.8, {2, 10, 1});
   psf.coefficients.pop_back();
   EXPECT_THROW(make_effective_psf(psf), InputError);
-  psf = gaussian(0.8, 2, 10, 1);
+  psf = gaussian(0.8, {2, 10, 1});
   psf.coefficients[3] = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THROW(make_effective_psf(psf), InputError);
-  psf = gaussian(0.8, 2, 10, 1);
+  psf = gaussian(0.8, {2, 10, 1});
   psf.field_scale.x = 0.0;
   EXPECT_THROW(make_effective_psf(psf), InputError);
 }
@@ -172,7 +178,7 @@ TEST(EffectivePsfFile, GivesBackThePsf) {
   const test::TemporaryFolder folder;
   const auto file = folder.path() / "psf.fits";
   for (const int order : {0, 2}) {
-    const EffectivePsf psf = gaussian(0.8, 3, 9, order);
+    const EffectivePsf psf = gaussian(0.8, {3, 9, order});
     write_effective_psf(file, psf);
     EXPECT_TRUE(is_effective_psf(file));
     const EffectivePsf again = read_effective_psf(file);
