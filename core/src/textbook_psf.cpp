@@ -213,9 +213,9 @@ std::string to_string(TextbookMethod method, int n) {
     case TextbookMethod::kGaussLegendre:
       return fmt::format("Gauss-Legendre {}", n);
     case TextbookMethod::kLinear:
-      return fmt::format("{} phases, linear", n);
+      return fmt::format("{} phases linear", n);
     case TextbookMethod::kCubic:
-      return fmt::format("{} phases, cubic", n);
+      return fmt::format("{} phases cubic", n);
   }
   throw BugError("unknown method");
 }
