@@ -16,6 +16,9 @@ const std::vector<FlagName>& flag_names() {
       {measurement_flag::kSpoiltBackground, "spoilt_background",
        "background pixels are saturated or bloomed on: the level is of the others"},
       {measurement_flag::kBlended, "blended", "PSF weights can't tell the star from its neighbours well"},
+      {measurement_flag::kMerged, "merged", "stars that cannot be told apart are measured as one"},
+      {measurement_flag::kUnsettled, "unsettled", "the fit did not converge, or ran away"},
+      {measurement_flag::kOutlier, "outlier", "pixels near the star were left out of the fit"},
   };
   return names;
 }

@@ -135,11 +135,14 @@ int run_command_line(int argc, char** argv) {
       ->type_name("FILE");
   sub->add_option(
          "--method", photometry_options.method,
-         "aperture, mask (optimal binary), weighted, psf (neighbours fitted too), or auto: what suits the scene, "
-         "and it says why")
-      ->check(CLI::IsMember({"auto", "aperture", "mask", "weighted", "psf"}))
+         "aperture, mask (optimal binary), weighted, psf (neighbours fitted too), fit (places too, group by group, "
+         "careful with cosmic rays, saturation and blends), or auto: what suits the scene, and it says why")
+      ->check(CLI::IsMember({"auto", "aperture", "mask", "weighted", "psf", "fit"}))
       ->capture_default_str();
-  sub->add_option("--psf", photometry_options.psf, "a FITS file, or gaussian:SIGMA_PX; all but apertures need it")
+  sub->add_option(
+         "--psf", photometry_options.psf,
+         "a FITS file, gaussian:SIGMA_PX, or measured: from the stars of the image (auto does so in crowds); all "
+         "but apertures need it")
       ->type_name("PSF");
   sub->add_option("--threshold", photometry_options.threshold,
                   "of stars that are found, in units of their noise (default: 5)")
@@ -165,6 +168,17 @@ int run_command_line(int argc, char** argv) {
          "write the image without its background and its stars, as their PSF says (without --psf a Gaussian of "
          "the measured width)")
       ->type_name("FILE");
+  sub->add_option("--psf-output", photometry_options.psf_output,
+                  "write the PSF that was measured from the image: a FITS file for --psf")
+      ->type_name("FILE");
+  sub->add_option("--phase-errors", photometry_options.phase_errors,
+                  "write what the PSF leaves of bright stars against their place within a pixel")
+      ->type_name("FILE");
+  sub->add_option("--artificial-stars", photometry_options.artificial_stars,
+                  "add so many stars of known flux to copies of the image, measure again, and write completeness and "
+                  "errors against magnitude beside the output, in *_completeness.csv")
+      ->check(CLI::Range(1, 10000000))
+      ->type_name("N");
   sub->add_option("--gain", photometry_options.gain, "if the header does not say it")->type_name("E-/ADU");
   sub->add_option("--read-noise", photometry_options.read_noise, "if the header does not say it")->type_name("E-");
   sub->add_option("--bias", photometry_options.bias,

@@ -10,6 +10,7 @@
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/photometry/aperture.hpp"
+#include "counts.hpp"
 #include "mesh/cell_histogram.hpp"
 #include "mesh/light_under_sky.hpp"
 #include "natural_spline.hpp"
@@ -48,7 +49,7 @@ int cell_edge(std::size_t i, std::size_t n, int pixels) {
 constexpr std::size_t kBlock = 4;  // cells along a side of a block whose pixels tell how much light of stars is in it
 
 bool usable(float counts, std::uint8_t flags) {
-  return (flags & ~pixel_flag::kTruth) == 0 && std::isfinite(counts);
+  return (flags & ~pixel_flag::kTruth) == 0 && detail::is_count(counts);
 }
 
 double median_of(std::vector<double> values) {

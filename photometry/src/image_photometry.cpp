@@ -11,6 +11,7 @@
 #include "astroid/photometry/aperture.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "image_sky.hpp"
+#include "source_places.hpp"
 
 namespace astroid {
 
@@ -61,28 +62,6 @@ void check_settings(const ImagePhotometrySettings& settings) {
   if (!(settings.annulus_clip > 0.0))
     complain("annulus clip", fmt::format("{}", settings.annulus_clip), "more than 0 sigma", "no pixel would be left");
   if (!problems.empty()) throw InputError(std::move(problems));
-}
-
-void check_positions(std::span<const SourceRequest> sources, const SkyProjection* sky) {
-  if (sky != nullptr) return;
-  for (const SourceRequest& source : sources) {
-    if (source.pixel || !source.sky) continue;
-    Problem problem;
-    problem.parameter = "source " + source.id;
-    problem.expected = "x and y, or an image with celestial coordinates";
-    problem.message = "a position in the sky, but the image has no coordinates";
-    throw InputError(std::move(problem));
-  }
-}
-
-PixelPosition position_of(const SourceRequest& source, const SkyProjection* sky) {
-  if (source.pixel) return *source.pixel;
-  if (source.sky && sky != nullptr) return sky->to_pixel(*source.sky).value_or(PixelPosition{kNaN, kNaN});
-  return {kNaN, kNaN};
-}
-
-bool on_frame(PixelPosition p, const Rectangle& area) {
-  return p.x >= area.x0 - 0.5 && p.x < area.x1() - 0.5 && p.y >= area.y0 - 0.5 && p.y < area.y1() - 0.5;
 }
 
 Weights aperture_weights(PixelPosition centre, double radius) {
@@ -187,7 +166,7 @@ class ImageMeasurer {
     skies_.resize(sources.size());
     for (std::size_t i = 0; i < sources.size(); ++i) {
       const PixelPosition centre{sources[i].x, sources[i].y};
-      if (!on_frame(centre, area_)) {
+      if (!detail::on_frame(centre, area_)) {
         sources[i].flags |= measurement_flag::kOutside;
         continue;
       }
@@ -275,6 +254,7 @@ class ImageMeasurer {
         source.flux_err /= enclosed;
       }
     }
+    source.flux_err = std::hypot(source.flux_err, settings_.psf_error * source.flux);
     if (source.flux_err > 0.0) source.snr = source.flux / source.flux_err;
     const auto magnitude = magnitude_of(Electrons(source.flux) / frame_.header.exposure_time, settings_.zero_point);
     if (magnitude) {
@@ -296,25 +276,8 @@ std::vector<SourceMeasurement> measure_image(const Frame& frame, const SkyProjec
                                              std::span<const SourceRequest> sources,
                                              const ImagePhotometrySettings& settings) {
   check_settings(settings);
-  check_positions(sources, sky);
   ASTROID_CHECK_EQ(frame.pixels.layout().regions().size(), std::size_t{1});
-  std::vector<SourceMeasurement> measured(sources.size());
-  for (std::size_t i = 0; i < sources.size(); ++i) {
-    SourceMeasurement& m = measured[i];
-    const PixelPosition centre = position_of(sources[i], sky);
-    SkyPosition direction{kNaN, kNaN};
-    if (sources[i].sky) {
-      direction = *sources[i].sky;
-    } else if (sky != nullptr && std::isfinite(centre.x) && std::isfinite(centre.y)) {
-      direction = sky->to_sky(centre);
-    }
-    m.id = sources[i].id;
-    m.x = centre.x;
-    m.y = centre.y;
-    m.ra = direction.ra;
-    m.dec = direction.dec;
-    m.flux = m.flux_err = m.mag = m.mag_err = m.background = m.snr = m.chi2 = kNaN;
-  }
+  std::vector<SourceMeasurement> measured = detail::rows_of(sources, sky);
   ImageMeasurer(frame, settings).measure_all(measured);
   return measured;
 }

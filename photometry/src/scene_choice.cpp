@@ -21,9 +21,9 @@ MethodChoice choose_method(const ImageScene& scene) {
       fmt::format("{:.0f} % of {} stars have another within three FWHM", 100.0 * scene.neighbours, scene.stars);
   if (!scene.psf_given) {
     if (crowded)
-      return {
-          PhotometryMethod::kAperture,
-          fmt::format("no PSF was given, so circles, though {}: with --psf their light could be told apart", crowd)};
+      return {.method = PhotometryMethod::kPsf,
+              .why = fmt::format("no PSF was given, but {}: the PSF is measured, and they are fitted together", crowd),
+              .measure_psf = true};
     return {PhotometryMethod::kAperture, fmt::format("no PSF was given, and {}: circles lose little", crowd)};
   }
   if (scene.catalogue && !crowded && undersampled)

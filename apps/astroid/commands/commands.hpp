@@ -67,13 +67,16 @@ struct PhotometryOptions {
   std::vector<std::string> images;
   std::string catalogue;
   std::string method = "auto";
-  std::string psf;  ///< file or gaussian:SIGMA_PX
+  std::string psf;  ///< file, gaussian:SIGMA_PX or measured
   bool ignore_overscan = false;
   std::optional<double> radius, correct_to, threshold, gain, read_noise, bias, saturation, zero_point, exposure_time;
   std::string background;       ///< local, mesh or a number of ADU; empty: local, or mesh where stars are found
   std::vector<double> annulus;  ///< inner and outer radius, px; empty: the default
   std::optional<double> clip;   ///< sigma, of the annulus; 0: the plain median
   std::string residual;         ///< file; empty: none
+  std::string psf_output;       ///< file of the measured PSF; empty: none
+  std::optional<std::size_t> artificial_stars;  ///< to add, to see how many come back
+  std::string phase_errors;                     ///< file; empty: none
   std::string output = "sources.csv";
   bool overwrite = false;
 };

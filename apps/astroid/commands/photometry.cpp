@@ -6,135 +6,36 @@
 #include <filesystem>
 #include <limits>
 
-#include "astroid/catalogues/catalogue_reader.hpp"
-#include "astroid/core/csv.hpp"
+#include "astroid/core/effective_psf.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/math.hpp"
+#include "astroid/core/photometric.hpp"
 #include "astroid/core/units.hpp"
+#include "astroid/photometry/artificial_stars.hpp"
 #include "astroid/photometry/field_photometry.hpp"
 #include "astroid/photometry/found_stars.hpp"
+#include "astroid/photometry/group_photometry.hpp"
 #include "astroid/photometry/image_photometry.hpp"
+#include "astroid/photometry/phase_errors.hpp"
+#include "astroid/photometry/psf_measurement.hpp"
 #include "astroid/photometry/residual_image.hpp"
 #include "astroid/photometry/scene_choice.hpp"
 #include "commands/commands.hpp"
 #include "commands/configuration.hpp"
+#include "commands/photometry_options.hpp"
 #include "commands/photometry_record.hpp"
 
 namespace astroid::commands {
 
 namespace {
 
-constexpr std::string_view kGaussian = "gaussian:";
-
-/// gaussian:SIGMA_PX or a FITS file; nothing without --psf.
-std::shared_ptr<const PixelPsf> read_psf(const std::string& text) {
-  if (text.empty()) return nullptr;
-  if (text.starts_with(kGaussian)) {
-    const std::optional<double> sigma = parse_number(text.substr(kGaussian.size()));
-    if (!sigma)
-      throw InputError(Problem{.parameter = "--psf",
-                               .value = text,
-                               .expected = "gaussian:SIGMA_PX, such as gaussian:0.8",
-                               .message = "the width is not a number"});
-    return make_gaussian_psf(*sigma);
-  }
-  constexpr double kPpm = 1e-6;
-  return make_prf_psf(read_psf_table(text), kPpm);
-}
-
-void set_background(const std::string& text, bool blind, ImagePhotometrySettings& settings) {
-  if (text.empty()) {
-    settings.background = blind ? BackgroundMethod::kMesh : BackgroundMethod::kLocal;
-  } else if (text == "local") {
-    settings.background = BackgroundMethod::kLocal;
-  } else if (text == "mesh") {
-    settings.background = BackgroundMethod::kMesh;
-  } else if (const std::optional<double> level = parse_number(text)) {
-    settings.background = BackgroundMethod::kKnown;
-    settings.known_background = Adu(*level);
-  } else {
-    throw InputError(Problem{.parameter = "--background",
-                             .value = text,
-                             .expected = "local, mesh, or a number",
-                             .message = "is none of them"});
-  }
-}
-
-/// Positions of any catalogue; magnitudes are not needed.
-std::vector<SourceRequest> read_requests(const std::string& file) {
-  const StarCatalogue catalogue = read_catalogue(file, {.positions_only = true, .check_unit = false});
-  std::vector<SourceRequest> requests;
-  for (const CatalogueStar& star : catalogue.stars) {
-    SourceRequest request{.id = star.id, .pixel = {}, .sky = {}};
-    if (catalogue.positions == PositionKind::kPixel) {
-      request.pixel = star.pixel;
-    } else {
-      request.sky = star.sky;
-    }
-    requests.push_back(std::move(request));
-  }
-  return requests;
-}
-
-/// FILE for one image; FILE_IMAGE for each of several.
-std::filesystem::path output_for(const PhotometryOptions& options, const std::string& file, const std::string& image) {
-  if (options.images.size() == 1) return file;
-  const std::filesystem::path output = file;
-  return output.parent_path() / fmt::format("{}_{}{}", output.stem().string(),
-                                            std::filesystem::path(image).stem().string(), output.extension().string());
-}
-
-PhotometryMethod method_of(const std::string& name) {
-  if (name == "mask") return PhotometryMethod::kMask;
-  if (name == "weighted") return PhotometryMethod::kWeighted;
-  return name == "psf" ? PhotometryMethod::kPsf : PhotometryMethod::kAperture;
-}
-
-std::string name_of(PhotometryMethod method) {
-  switch (method) {
-    case PhotometryMethod::kMask:
-      return "mask";
-    case PhotometryMethod::kWeighted:
-      return "weighted";
-    case PhotometryMethod::kPsf:
-      return "psf";
-    default:
-      return "aperture";
-  }
-}
-
-void check_options(const PhotometryOptions& options, bool blind) {
-  std::vector<Problem> problems;
-  const auto complain = [&problems](const char* parameter, std::string value, const char* expected,
-                                    const char* message) {
-    problems.push_back(
-        Problem{.parameter = parameter, .value = std::move(value), .expected = expected, .message = message});
-  };
-  const bool psf = !options.psf.empty();
-  if (blind && (options.method == "mask" || options.method == "weighted"))
-    complain("--method", options.method, "--catalogue FILE, or --method auto, aperture or psf",
-             "masks are for positions that are given");
-  if (options.method != "auto" && options.method != "aperture" && !psf)
-    complain("--method", options.method, "--psf FILE or --psf gaussian:SIGMA_PX with it",
-             "all but apertures need the PSF");
-  const bool local = options.background == "local" || (options.background.empty() && !blind);
-  if (!local && (!options.annulus.empty() || options.clip))
-    complain("--annulus, --clip", "", "--background local with it",
-             "there is no annulus around stars that are found on a mesh");
-  if (options.threshold && !(*options.threshold > 0.0))
-    complain("--threshold", fmt::format("{}", *options.threshold), "more than 0", "everything would be a star");
-  if (options.threshold && !blind)
-    complain("--threshold", fmt::format("{}", *options.threshold), "no --catalogue with it",
-             "positions are given, and nothing is looked for");
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
 class PhotometryRun {
  public:
   explicit PhotometryRun(const PhotometryOptions& options) : options_(options), blind_(options.catalogue.empty()) {
     std::vector<std::string> inputs = options.images;
     if (!blind_) inputs.push_back(options.catalogue);
-    if (!options.psf.empty() && !options.psf.starts_with(kGaussian)) inputs.push_back(options.psf);
-    check_options(options, blind_);
+    if (names_a_file(options.psf)) inputs.push_back(options.psf);
+    check_options(options);
     require_files(inputs);
     settings_.psf = read_psf(options.psf);
     if (options.radius) settings_.aperture_radius = Pixels(*options.radius);
@@ -156,10 +57,17 @@ class PhotometryRun {
   }
 
   void measure(const std::string& image) {
-    const std::filesystem::path output = output_for(options_, options_.output, image);
-    const std::filesystem::path residual =
-        options_.residual.empty() ? std::filesystem::path() : output_for(options_, options_.residual, image);
-    for (const std::filesystem::path& file : {output, residual})
+    const std::filesystem::path output = output_for(options_.images.size(), options_.output, image);
+    const auto optional = [&](const std::string& name) {
+      return name.empty() ? std::filesystem::path() : output_for(options_.images.size(), name, image);
+    };
+    const std::filesystem::path residual = optional(options_.residual);
+    const std::filesystem::path psf_output = optional(options_.psf_output);
+    const std::filesystem::path phases = optional(options_.phase_errors);
+    const std::filesystem::path completeness =
+        options_.artificial_stars ? output.parent_path() / (output.stem().string() + "_completeness.csv")
+                                  : std::filesystem::path();
+    for (const std::filesystem::path& file : {output, residual, psf_output, phases, completeness})
       if (!file.empty() && std::filesystem::exists(file) && !options_.overwrite)
         throw InputError(
             Problem{.file = file.string(), .expected = "another FILE, or --overwrite", .message = "the file exists"});
@@ -173,7 +81,11 @@ class PhotometryRun {
     const auto map = std::make_shared<const BackgroundMap>(file.frame, 0, settings_.mesh);
     if (file.gain_assumed) measure_missing_gain(*map, file);
     record.notes = std::move(file.notes);
-    const std::vector<SourceMeasurement> sources = measure_sources(file.frame, sky, map, record);
+    ImagePhotometrySettings settings = settings_;
+    settings.map = map;
+    std::optional<MeasuredPsf> measured;
+    if (is_measured(options_.psf)) measured = use_measured_psf(file.frame, settings, record);
+    const std::vector<SourceMeasurement> sources = measure_sources(file.frame, sky, settings, measured, record);
     record.seconds_measuring = std::chrono::duration<double>(std::chrono::steady_clock::now() - was_read).count();
     record.gain = file.frame.header.gain.value();
     record.readout_noise = file.frame.header.readout_noise.value();
@@ -185,12 +97,17 @@ class PhotometryRun {
       record.flagged += source.flags != 0 ? 1 : 0;
     }
     record.sources = sources.size();
+    if (!completeness.empty()) test_completeness(file.frame, *map, settings, completeness, record);
     for (const std::string& note : record.notes) fmt::print(stderr, "{}: {}\n", image, note);
     write_table(output, sources, record);
-    if (!residual.empty()) {
-      const std::shared_ptr<const PixelPsf> psf = settings_.psf ? settings_.psf : gaussian_of(record.fwhm);
-      write_residual(residual, residual_image(file.frame, *map, sources, *psf), record);
+    if (!residual.empty() || !phases.empty()) {
+      const std::shared_ptr<const PixelPsf> psf = settings.psf ? settings.psf : gaussian_of(record.fwhm);
+      const Image<float, unit::Adu> left = residual_image(file.frame, *map, sources, *psf);
+      if (!residual.empty()) write_residual(residual, left, record);
+      if (!phases.empty())
+        write_phase_errors(phases, phase_errors(left, file.frame.header.gain, record.background_rms, sources, *psf));
     }
+    if (!psf_output.empty() && measured) write_effective_psf(psf_output, measured->psf);
     if (options_.method == "auto") fmt::print("{}: method {}: {}\n", image, record.method, record.why);
     fmt::print("{}: {} of {} sources measured, {} flagged: {}\n", image, record.measured, record.sources,
                record.flagged, output.string());
@@ -213,20 +130,13 @@ class PhotometryRun {
   }
 
   std::vector<SourceMeasurement> measure_sources(const Frame& frame, const SkyProjection* sky,
-                                                 const std::shared_ptr<const BackgroundMap>& map,
-                                                 PhotometryRecord& record) {
-    ImagePhotometrySettings settings = settings_;
-    settings.map = map;
+                                                 ImagePhotometrySettings& settings,
+                                                 std::optional<MeasuredPsf>& measured, PhotometryRecord& record) {
     record.why = "it was asked for";
     record.method = options_.method;
     std::optional<FoundStars> found;
     if (blind_ && options_.method != "psf") {
-      FoundStarsSettings find;
-      find.detection.psf = settings.psf.get();
-      if (options_.threshold) find.detection.threshold = *options_.threshold;
-      find.measure = settings;
-      if (options_.radius) find.radius = Pixels(*options_.radius);
-      if (options_.correct_to) find.correct_to = Pixels(*options_.correct_to);
+      FoundStarsSettings find = find_settings(settings);
       if (options_.method == "auto" && settings.psf) {
         // Only how crowded it is matters.
         find.correct = false;
@@ -234,15 +144,17 @@ class PhotometryRun {
       }
       found = measure_found_stars(frame, sky, find);
     }
-    record.fwhm = found && found->detection.fwhm_measured ? found->detection.fwhm : measure_fwhm(frame, *map);
+    record.fwhm = found && found->detection.fwhm_measured ? found->detection.fwhm : measure_fwhm(frame, *settings.map);
     if (options_.method == "auto") {
-      const MethodChoice choice = choose_method(summary(frame, sky, found, record.fwhm));
+      MethodChoice choice = choose_method(summary(frame, sky, found, settings.psf != nullptr, record.fwhm));
+      if (choice.measure_psf) try_to_measure_psf(frame, settings, choice, measured, record);
       settings.method = choice.method;
       record.why = choice.why;
       record.method = name_of(choice.method);
     } else {
       settings.method = method_of(options_.method);
     }
+    if (options_.method == "fit") return fit_groups(frame, sky, settings, record);
     if (!blind_) {
       if (options_.correct_to)
         record.notes.emplace_back("--correct-to was ignored: it is for stars that are found without a catalogue.");
@@ -255,6 +167,74 @@ class PhotometryRun {
     return std::move(found->sources);
   }
 
+  static MeasuredPsf use_measured_psf(const Frame& frame, ImagePhotometrySettings& settings, PhotometryRecord& record) {
+    MeasuredPsf measured = measure_psf(frame);
+    settings.psf_error = measured.flux_error;
+    settings.psf = make_effective_psf(measured.psf);
+    record.notes.push_back(fmt::format("The PSF was measured from {} stars: {}; its error makes {:.2g} % of a flux.",
+                                       measured.stars, settings.psf->description(), 100.0 * measured.flux_error));
+    return measured;
+  }
+
+  // Circles, where an image does not show enough stars.
+  static void try_to_measure_psf(const Frame& frame, ImagePhotometrySettings& settings, MethodChoice& choice,
+                                 std::optional<MeasuredPsf>& measured, PhotometryRecord& record) {
+    try {
+      measured = use_measured_psf(frame, settings, record);
+    } catch (const InputError& error) {
+      choice.method = PhotometryMethod::kAperture;
+      choice.why = fmt::format("{}; but it could not be ({}), so circles", choice.why,
+                               error.problems().empty() ? "unknown" : error.problems().front().value);
+    }
+  }
+
+  // With the method and the PSF that the image itself was measured with.
+  void test_completeness(const Frame& frame, const BackgroundMap& map, const ImagePhotometrySettings& settings,
+                         const std::filesystem::path& file, PhotometryRecord& record) const {
+    const std::shared_ptr<const PixelPsf> psf = settings.psf ? settings.psf : gaussian_of(record.fwhm);
+    // The error of a lone faint star: a Gaussian of that width has 4 pi sigma² noise pixels.
+    constexpr double kDefault = 2.0;  // px
+    const double fwhm = std::isfinite(record.fwhm) && record.fwhm > 0.0 ? record.fwhm : kDefault;
+    const double sigma = fwhm / kFwhmPerSigma;
+    const double noise =
+        frame.header.gain.value() * map.median_rms() * std::sqrt(4.0 * kPi * (sigma * sigma + 1.0 / 12.0));
+    constexpr double kFaintest = 2.0;  // errors
+    constexpr double kBrightest = 300.0;
+    ArtificialStarSettings stars;
+    stars.stars = *options_.artificial_stars;
+    stars.faintest = kFaintest * std::max(1.0, noise);
+    stars.brightest = kBrightest * std::max(1.0, noise);
+    stars.spacing = std::max(12.0, 6.0 * fwhm);
+    stars.match = std::max(1.0, 0.5 * fwhm);
+    const std::vector<CompletenessBin> bins = add_artificial_stars(frame, *psf, stars, [&](const Frame& added) {
+      if (settings.method == PhotometryMethod::kPsf) {
+        PhotometryRecord silent;
+        return fit_field(added, nullptr, settings, silent);
+      }
+      ImagePhotometrySettings again = settings;
+      again.map = std::make_shared<const BackgroundMap>(added, 0, settings.mesh);
+      return measure_found_stars(added, nullptr, find_settings(again)).sources;
+    });
+    write_completeness(file, bins, settings.zero_point, frame.header.exposure_time);
+    const double limit = completeness_limit(bins, 0.5);
+    const auto magnitude = std::isfinite(limit)
+                               ? magnitude_of(Electrons(limit) / frame.header.exposure_time, settings.zero_point)
+                               : std::nullopt;
+    record.notes.push_back(magnitude ? fmt::format("Of added stars of magnitude {:.2f} half come back ({}).",
+                                                   magnitude->value(), file.string())
+                                     : fmt::format("Added stars do not say where half come back ({}).", file.string()));
+  }
+
+  FoundStarsSettings find_settings(const ImagePhotometrySettings& settings) const {
+    FoundStarsSettings find;
+    find.detection.psf = settings.psf.get();
+    if (options_.threshold) find.detection.threshold = *options_.threshold;
+    find.measure = settings;
+    if (options_.radius) find.radius = Pixels(*options_.radius);
+    if (options_.correct_to) find.correct_to = Pixels(*options_.correct_to);
+    return find;
+  }
+
   static std::string text_of(const FoundStars& found) {
     const std::string circles = fmt::format("circles of {:.2f} px around stars of FWHM {:.2f} px{}", found.radius,
                                             found.detection.fwhm, found.detection.fwhm_measured ? ", measured" : "");
@@ -265,9 +245,9 @@ class PhotometryRun {
   }
 
   ImageScene summary(const Frame& frame, const SkyProjection* sky, const std::optional<FoundStars>& found,
-                     double fwhm) const {
+                     bool psf_known, double fwhm) const {
     ImageScene scene;
-    scene.psf_given = settings_.psf != nullptr;
+    scene.psf_given = psf_known;
     scene.catalogue = !blind_;
     scene.fwhm = fwhm;
     if (found) {
@@ -289,10 +269,24 @@ class PhotometryRun {
     return scene;
   }
 
+  std::vector<SourceMeasurement> fit_groups(const Frame& frame, const SkyProjection* sky,
+                                            const ImagePhotometrySettings& settings, PhotometryRecord& record) const {
+    if (!options_.background.empty())
+      record.notes.emplace_back("--background was ignored: a level is fitted under each group of stars.");
+    if (options_.radius) record.notes.emplace_back("--radius was ignored: stars are fitted, in no circles.");
+    GroupPhotometrySettings groups;
+    groups.psf = settings.psf;
+    groups.psf_error = settings.psf_error;
+    groups.map = settings.map;
+    groups.zero_point = settings.zero_point;
+    return measure_groups(frame, sky, requests_, groups);
+  }
+
   std::vector<SourceMeasurement> fit_field(const Frame& frame, const SkyProjection* sky,
                                            const ImagePhotometrySettings& settings, PhotometryRecord& record) const {
     FieldPhotometrySettings field;
     field.zero_point = settings.zero_point;
+    field.psf_error = settings.psf_error;
     if (options_.threshold) field.threshold = *options_.threshold;
     const auto ignored = [&record](const char* option, const char* instead) {
       record.notes.push_back(

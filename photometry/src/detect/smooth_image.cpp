@@ -7,6 +7,7 @@
 
 #include "astroid/core/math.hpp"
 #include "astroid/core/units.hpp"
+#include "counts.hpp"
 
 namespace astroid::detail {
 
@@ -31,7 +32,7 @@ void combine(std::span<const float* const> in, std::span<const float> weights, c
 }
 
 bool usable(float counts, unsigned flags) {
-  return (flags & pixel_flag::kBad) == 0 && std::isfinite(counts);
+  return (flags & pixel_flag::kBad) == 0 && is_count(counts);
 }
 
 }  // namespace

@@ -27,7 +27,7 @@ void FieldFit::run() {
   solver_.render();
   solver_.assemble();
   for (int round = 0; round < settings_.rounds; ++round) {
-    if (round > 1) add_companions();
+    if (round > 1 && settings_.companions) add_companions();
     add_from_residuals();
     for (const Peak& peak : accepted_) solver_.stars().push_back({peak.x, peak.y, peak.flux});
     const std::size_t changed = accepted_.size();
@@ -100,6 +100,15 @@ std::size_t FieldFit::prune() {
   return count;
 }
 
+// Whether a candidate is within what a wrong PSF leaves of the stars that are known.
+bool FieldFit::may_be_psf_error(const Peak& peak) const {
+  if (!(settings_.psf_doubt > 0.0)) return false;
+  const int px = std::clamp(static_cast<int>(std::floor(peak.x + 0.5)), 0, solver_.light().nx() - 1);
+  const int py = std::clamp(static_cast<int>(std::floor(peak.y + 0.5)), 0, solver_.light().ny() - 1);
+  const auto light = static_cast<double>(*solver_.light().at(px, py));
+  return peak.flux * reach_.peak() < settings_.psf_doubt * light;
+}
+
 bool FieldFit::was_refused(const Peak& peak) const {
   const double least = 0.5 * reach_.fwhm();
   int times = 0;
@@ -135,6 +144,8 @@ std::size_t FieldFit::add_from_residuals() {
     const FluxEstimate estimate = local_.candidate(peak.x, peak.y);
     if (!(estimate.flux > (local_.nearest() < 2.0 * reach_.fwhm() ? trial : settings_.threshold) * estimate.error))
       continue;
+    if (may_be_psf_error({peak.x, peak.y, estimate.flux, 0.0})) continue;
+    if (!settings_.companions && local_.nearest() < reach_.fwhm()) continue;
     found.push_back({peak.x, peak.y, estimate.flux, estimate.flux / estimate.error});
   }
   std::sort(found.begin(), found.end(), [](const Peak& a, const Peak& b) { return a.significance > b.significance; });
@@ -169,6 +180,7 @@ std::size_t FieldFit::add_companions() {
       const double x = stars[i].x + ring * det::cos(angle);
       const double y = stars[i].y + ring * det::sin(angle);
       const FluxEstimate estimate = local_.candidate(x, y);
+      if (may_be_psf_error({x, y, estimate.flux, 0.0})) continue;
       if (estimate.flux > trial * estimate.error && estimate.flux / estimate.error > best.significance)
         best = {x, y, estimate.flux, estimate.flux / estimate.error};
     }

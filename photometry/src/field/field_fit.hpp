@@ -14,6 +14,9 @@ struct FieldFitSettings {
   double threshold = 5.0;  ///< least flux of a star in units of its error, neighbours free
   int rounds = 10;         ///< of detection at most
   int sky_cell = 64;       ///< px
+  double psf_doubt =
+      0.0;  ///< share of a star's light in a pixel that the PSF may be wrong by: fainter than this is no star
+  bool companions = true;  ///< whether stars are looked for that hide within a FWHM of another
 };
 
 /// The loop. Fluxes, positions and sky are those of all stars fitted at once.
@@ -31,6 +34,7 @@ class FieldFit {
   std::size_t add_from_residuals();
   std::size_t add_companions();
   bool accept(const Peak& peak);
+  [[nodiscard]] bool may_be_psf_error(const Peak& peak) const;
   [[nodiscard]] bool was_refused(const Peak& peak) const;
 
   const FieldFitSettings& settings_;

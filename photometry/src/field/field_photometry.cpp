@@ -10,7 +10,10 @@
 #include "astroid/core/photometric.hpp"
 #include "astroid/photometry/estimator.hpp"
 #include "field/field_fit.hpp"
+#include "field/field_pixels.hpp"
 #include "field/hidden_stars.hpp"
+#include "field/unsettled_star.hpp"
+#include "source_places.hpp"
 
 namespace astroid {
 
@@ -19,7 +22,6 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr int kLargestStamp = 40;      // px, half-side
 constexpr double kBlendedShare = 0.5;  // of the information about a flux that neighbours leave: error √2 larger
-constexpr double kQuantisation = 1.0 / 12.0;
 
 void check_settings(const FieldPhotometrySettings& settings) {
   if (settings.threshold > 0.0 && settings.rounds > 0) return;
@@ -27,61 +29,6 @@ void check_settings(const FieldPhotometrySettings& settings) {
                            .value = fmt::format("{}, {}", settings.threshold, settings.rounds),
                            .expected = "both more than 0",
                            .message = "nothing can be detected"});
-}
-
-// @returns false when no pixel can be used.
-bool fill_pixels(const Frame& frame, const BackgroundMap& mesh, detail::FieldPixels& pixels) {
-  const double gain = frame.header.gain.value();
-  const double bias = frame.header.bias.value();
-  const auto values = frame.pixels.view(0);
-  const auto flags = frame.flags.view(0);
-  const Rectangle& area = values.area();
-  constexpr unsigned kUnusable = 0xFFU & ~(pixel_flag::kTruth | pixel_flag::kShortRamp);
-  std::vector<double> level(static_cast<std::size_t>(area.nx));
-  bool any = false;
-  for (int j = 0; j < area.ny; ++j) {
-    mesh.level_row(area.y0 + j, level);
-    const auto row = values.row(area.y0 + j);
-    const auto flag = flags.row(area.y0 + j);
-    for (std::size_t i = 0; i < row.size(); ++i) {
-      const double sky = gain * (level[i] - bias);
-      pixels.sky.row(j)[i] = std::isfinite(sky) ? static_cast<float>(sky) : 0.0F;
-      if (!std::isfinite(row[i]) || (flag[i] & kUnusable) != 0U) continue;
-      pixels.electrons.row(j)[i] = static_cast<float>(gain * (static_cast<double>(row[i]) - bias));
-      pixels.usable.row(j)[i] = 1.0F;
-      any = true;
-    }
-  }
-  const double sky = std::max(0.0, gain * (mesh.median_level() - bias));
-  const double readout = frame.header.readout_noise.value();
-  const double stated = readout * readout + gain * gain * kQuantisation;
-  const double measured = gain * gain * mesh.median_rms() * mesh.median_rms();
-  // A sky that was subtracted before still has its noise. Crowding alone does not double what the header states.
-  constexpr double kDoubtful = 2.0;
-  pixels.read_variance = stated;
-  if (measured > kDoubtful * (stated + sky) || readout == 0.0) pixels.read_variance = std::max(stated, measured - sky);
-  return any;
-}
-
-std::uint32_t flags_of(const Frame& frame, const detail::ModelStar& star, int core) {
-  const auto flags = frame.flags.view(0);
-  const auto values = frame.pixels.view(0);
-  const Rectangle& area = flags.area();
-  const int x0 = area.x0 + static_cast<int>(std::floor(star.x + 0.5));
-  const int y0 = area.y0 + static_cast<int>(std::floor(star.y + 0.5));
-  std::uint32_t result = 0;
-  for (int y = y0 - core; y <= y0 + core; ++y) {
-    for (int x = x0 - core; x <= x0 + core; ++x) {
-      if (!area.contains(x, y)) {
-        result |= measurement_flag::kEdge;
-        continue;
-      }
-      const unsigned f = flags.at(x, y);
-      if ((f & (pixel_flag::kFullWell | pixel_flag::kAdcSaturated)) != 0U) result |= measurement_flag::kSaturated;
-      if ((f & pixel_flag::kBad) != 0U || !std::isfinite(values.at(x, y))) result |= measurement_flag::kBadPixel;
-    }
-  }
-  return result;
 }
 
 double core_chi2(const detail::FieldSolver& field, const detail::ModelStar& star, int core) {
@@ -112,10 +59,14 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
   ASTROID_CHECK_EQ(area.y0, 0);
   const detail::PsfReach reach(psf, {area.x0 + 0.5 * area.nx, area.y0 + 0.5 * area.ny}, kLargestStamp);
   constexpr int kMargin = 8;  // px: stars may lie a little outside, and vectors are read whole
-  const detail::PaddedPlane empty(area.nx, area.ny, reach.most() + kMargin);
-  detail::FieldPixels pixels{empty, empty, empty, 0.0};
-  if (!fill_pixels(frame, BackgroundMap(frame, 0, settings.mesh), pixels)) return {};
-  const detail::FieldFitSettings fit_settings{settings.threshold, settings.rounds, settings.mesh.cell};
+  detail::FieldPixels pixels = detail::field_pixels(frame, settings.mesh, reach.most() + kMargin);
+  if (!pixels.any) return {};
+  // What an error of the flux is in single pixels, where it is positive and negative.
+  constexpr double kDoubtPerError = 5.0;
+  const detail::FieldFitSettings fit_settings{.threshold = settings.threshold,
+                                              .rounds = settings.rounds,
+                                              .sky_cell = settings.mesh.cell,
+                                              .psf_doubt = kDoubtPerError * settings.psf_error};
   detail::FieldFit fit(psf, reach, pixels, fit_settings);
   fit.run();
   detail::FieldSolver& field = fit.solver();
@@ -123,8 +74,21 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
   detail::LocalFit local(field);
   std::vector<SourceMeasurement> sources;
   for (std::size_t i = 0; i < field.stars().size(); ++i) {
-    const detail::ModelStar& star = field.stars()[i];
-    const detail::StarCovariance c = local.covariance(i);
+    detail::ModelStar star = field.stars()[i];
+    detail::StarCovariance c = local.covariance(i);
+    std::uint32_t flags = c.share < kBlendedShare ? measurement_flag::kBlended : 0U;
+    if (detail::is_unsettled(star) && !c.degenerate) {
+      const FittedStar settled = detail::settle(field, i);
+      constexpr std::uint32_t kNot = measurement_flag::kUnsettled | measurement_flag::kMerged;
+      if ((settled.flags & kNot) == 0U && std::isfinite(settled.flux)) {
+        star.flux = settled.flux;
+        star.x = settled.position.x;
+        star.y = settled.position.y;
+        c.covariance = settled.covariance;
+      } else {
+        flags |= measurement_flag::kUnsettled;
+      }
+    }
     const double error = std::sqrt(c.covariance[0] * (1.0 + hidden.excess(star.flux)));
     if (c.degenerate || !(star.flux >= settings.threshold * error)) continue;
     SourceMeasurement s;
@@ -139,12 +103,11 @@ std::vector<SourceMeasurement> measure_field(const Frame& frame, const SkyProjec
       s.dec = direction.dec;
     }
     s.flux = star.flux;
-    s.flux_err = error;
-    s.snr = star.flux / error;
+    s.flux_err = std::hypot(error, settings.psf_error * star.flux);
+    s.snr = star.flux / s.flux_err;
     s.background = field.sky_at(star.x, star.y);
     s.chi2 = core_chi2(field, star, reach.core());
-    s.flags = flags_of(frame, star, reach.core());
-    if (c.share < kBlendedShare) s.flags |= measurement_flag::kBlended;
+    s.flags = flags | detail::pixel_flags_around(frame, {area.x0 + star.x, area.y0 + star.y}, reach.core());
     s.mag = kNaN;
     s.mag_err = kNaN;
     if (const auto mag = magnitude_of(Electrons(s.flux) / frame.header.exposure_time, settings.zero_point)) {

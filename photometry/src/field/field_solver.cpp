@@ -23,6 +23,10 @@ constexpr double kStepFwhm = 0.4;
 constexpr double kSettled = 0.1;
 // A flux may fall to this share of what it was in one step: then its position still means something.
 constexpr double kLeastShare = 0.1;
+// It may grow to this many times as much and so many errors, and the sky change by so many times its noise: where the
+// model is far off, its light lowers the weights of the pixels that contradict it, and full steps run away.
+constexpr double kMostShare = 3.0;
+constexpr double kMostErrors = 20.0;
 
 }  // namespace
 
@@ -282,14 +286,21 @@ std::size_t FieldSolver::step(double tolerance, int most_iterations) {
   for (std::size_t i = 0; i < n; ++i) {
     const double* delta = solution.data() + kParameters * i;
     ModelStar& star = stars_[i];
-    const double flux = std::max(star.flux + delta[0], kLeastShare * star.flux);
+    const double error = terms_[i].curvature[0] > 0.0 ? 1.0 / std::sqrt(terms_[i].curvature[0]) : 0.0;
+    const double flux =
+        std::clamp(star.flux + delta[0], kLeastShare * star.flux, kMostShare * star.flux + kMostErrors * error);
     star.change = std::abs(flux - star.flux) * std::sqrt(terms_[i].curvature[0]);
     unsettled += star.change > kSettled ? 1 : 0;
     star.flux = flux;
     star.x += std::clamp(delta[1], -most, most);
     star.y += std::clamp(delta[2], -most, most);
   }
-  for (std::size_t k = 0; k < sky_coefficients_.size(); ++k) sky_coefficients_[k] += solution[kParameters * n + k];
+  for (std::size_t k = 0; k < sky_coefficients_.size(); ++k) {
+    const double sky = sky_coefficients_[k];
+    const double noise = std::sqrt(std::max(0.0, sky) + pixels_.read_variance);
+    const double most_sky = kMostErrors * noise + kLeastShare * std::abs(sky);
+    sky_coefficients_[k] = sky + std::clamp(solution[kParameters * n + k], -most_sky, most_sky);
+  }
   return unsettled;
 }
 

@@ -21,6 +21,7 @@ struct FieldPixels {
   PaddedPlane usable;          ///< 1, or 0 in the margin and where a pixel is masked
   PaddedPlane sky;             ///< a first estimate, e- per pixel
   double read_variance = 0.0;  ///< e-² per pixel, of all that is not the photon noise of sky and stars
+  bool any = false;            ///< whether any pixel is usable
 };
 
 /// The curvature of chi² / 2 in one star's flux, x and y, and its slope.

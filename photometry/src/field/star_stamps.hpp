@@ -27,6 +27,7 @@ class PsfReach {
 
   /// Half-side of the stamp beyond which no pixel gets more than `level` e- of a star.
   [[nodiscard]] int half(double flux, double level) const;
+  [[nodiscard]] double peak() const { return edge_.front(); }          ///< largest share of a star in a pixel
   [[nodiscard]] double fwhm() const { return fwhm_; }                  ///< px, of a Gaussian with as many noise pixels
   [[nodiscard]] double noise_pixels() const { return noise_pixels_; }  ///< 1 / sum p², of a star at a pixel's centre
   [[nodiscard]] int core() const { return core_; }  ///< half-side of the square with 99.9 % of sum p², px

@@ -34,6 +34,7 @@ TEST_F(PhotometryOfImages, AtCataloguePositionsAgreesWithTheTruthWithinItsErrors
       {"--method", "mask", "--psf", "gaussian:0.6"},
       {"--method", "weighted", "--psf", "gaussian:0.6"},
       {"--method", "psf", "--psf", "gaussian:0.6"},
+      {"--method", "fit", "--psf", "gaussian:0.6"},
       {"--method", "aperture", "--radius", "3", "--background", "mesh"}};
   int number = 0;
   for (const auto& method : methods) {

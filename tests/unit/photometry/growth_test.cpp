@@ -97,7 +97,13 @@ TEST(MeasuredGain, IsNotToldByAnEvenSky) {
 TEST(ChooseMethod, SaysWhy) {
   ImageScene scene{.stars = 100, .fwhm = 2.5, .neighbours = 0.05};
   EXPECT_EQ(choose_method(scene).method, PhotometryMethod::kAperture);
+  scene.neighbours = 0.6;
+  EXPECT_EQ(choose_method(scene).method, PhotometryMethod::kPsf);
+  EXPECT_TRUE(choose_method(scene).measure_psf);
+  EXPECT_NE(choose_method(scene).why.find("measured"), std::string::npos);
+  scene.neighbours = 0.05;
   scene.psf_given = true;
+  EXPECT_FALSE(choose_method(scene).measure_psf);
   EXPECT_EQ(choose_method(scene).method, PhotometryMethod::kPsf);
   scene.catalogue = true;
   scene.fwhm = 1.2;

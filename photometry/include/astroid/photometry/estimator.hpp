@@ -39,7 +39,10 @@ inline constexpr std::uint32_t kNoBackground = 1U << 4;  ///< too few background
 inline constexpr std::uint32_t kOutside = 1U << 5;       ///< the star is not on the frame: flux is NaN
 inline constexpr std::uint32_t kNoFlux = 1U << 6;        ///< no pixel with light of the target: flux is NaN
 inline constexpr std::uint32_t kSpoiltBackground = 1U << 7;  ///< background pixels are saturated or bloomed on
-inline constexpr std::uint32_t kBlended = 1U << 8;  ///< PSF weights can't tell the star from its neighbours well
+inline constexpr std::uint32_t kBlended = 1U << 8;     ///< PSF weights can't tell the star from its neighbours well
+inline constexpr std::uint32_t kMerged = 1U << 9;      ///< two stars that cannot be told apart are measured as one
+inline constexpr std::uint32_t kUnsettled = 1U << 10;  ///< the fit did not converge, or ran away: flux may be wrong
+inline constexpr std::uint32_t kOutlier = 1U << 11;    ///< pixels near the star were left out of the fit
 }  // namespace measurement_flag
 
 /// A star as the ground believes it to be.

@@ -16,6 +16,7 @@ struct FieldPhotometrySettings {
   int rounds = 10;         ///< of detection at most
   MeshSettings mesh;       ///< of the first estimate of the sky; its cell is that of the fitted sky too
   Magnitude zero_point{0.0};
+  double psf_error = 0.0;  ///< sigma of what the PSF's error does to a flux, relative; it is in flux_err
 };
 
 /// Finds the stars of region 0 of a frame and fits positions, fluxes and sky together.

@@ -55,6 +55,7 @@ struct ImagePhotometrySettings {
   Pixels aperture_radius{3.0};
   int mask_window = 6;
   std::shared_ptr<const PixelPsf> psf;  ///< needed by masks and PSF weights; with it fluxes are those of the whole star
+  double psf_error = 0.0;               ///< sigma of what the PSF's error does to a flux, relative; it is in flux_err
   bool whole_star = true;               ///< divide by the fraction of the PSF that the pixels hold
   BackgroundMethod background = BackgroundMethod::kLocal;
   Adu known_background;  ///< counts per pixel, bias included; for BackgroundMethod::kKnown

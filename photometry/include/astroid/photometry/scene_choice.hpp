@@ -22,11 +22,13 @@ struct ImageScene {
 
 struct MethodChoice {
   PhotometryMethod method = PhotometryMethod::kAperture;
-  std::string why;  ///< one sentence
+  std::string why;           ///< one sentence
+  bool measure_psf = false;  ///< the PSF is to be measured from the image
 };
 
 /// Fits where the PSF is known, but an undersampled sparse scene with a catalogue is measured with a weighted mask,
-/// which forgives an error of the PSF's shape within a pixel; circles where it isn't known.
+/// which forgives an error of the PSF's shape within a pixel. Where it isn't known: circles, but in a crowd the PSF is
+/// measured from the image and fitted.
 [[nodiscard]] MethodChoice choose_method(const ImageScene& scene);
 
 /// Gain from photon transfer within one image: variance of the background against its level, cell by cell.
