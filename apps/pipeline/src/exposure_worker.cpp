@@ -47,6 +47,7 @@ void ExposureWorker::run(Batch batch, FluxBlock& block, std::atomic<std::int64_t
   turn_to(block.camera());
   for (std::size_t i = 0; i < batch.count; ++i) {
     simulate(block.camera(), block.first() + static_cast<std::int64_t>(batch.begin + i));
+    block.attitudes()[batch.begin + i] = state_.attitude.mean;
     block.lost()[batch.begin + i] = state_.lost_electrons;
     block.clipped()[batch.begin + i] = state_.clipped_pixels;
     std::swap(state_.frame, frames_[i]);
@@ -81,6 +82,12 @@ void ExposureWorker::measure(Batch batch, FluxBlock& block) {
     for (Frame& frame : frames) group().calibration.apply(frame, calibration_scratch_);
   if (group().mission.photometry.background == BackgroundMethod::kMesh)
     for (Frame& frame : frames) subtract_mesh(frame, group().mission.photometry);
+  if (group().correction != nullptr)
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      Attitude& attitude = block.attitudes()[batch.begin + i];
+      attitude =
+          group().correction->attitude(block.first() + static_cast<std::int64_t>(batch.begin + i), attitude, frames[i]);
+    }
   group().estimators.apply_batch(
       frames, scratch_, [&](std::size_t target, std::span<const double> flux, std::span<const std::uint32_t> flags) {
         const double reference = group().reference[target];

@@ -24,8 +24,9 @@ struct GroupInput {
   const Mission& mission;
   FrameCalibration calibration;
   EstimatorSet estimators;
-  std::vector<double> reference;         ///< e- per exposure, of each target
-  std::vector<std::uint32_t> own_flags;  ///< that hold for every exposure, of each target
+  std::vector<double> reference;                         ///< e- per exposure, of each target
+  std::vector<std::uint32_t> own_flags;                  ///< that hold for every exposure, of each target
+  std::shared_ptr<const AttitudeCorrection> correction;  ///< null: none
   ImageFiles images;
 };
 

@@ -58,4 +58,26 @@ std::vector<CrossMotion> AttitudeSharing::of_target(std::size_t target) const {
   return motions;
 }
 
+std::vector<CrossMotion> attitude_error_motion(const PreparedRun& run,
+                                               std::span<const std::shared_ptr<const AttitudeCorrection>> corrections,
+                                               std::size_t target) {
+  const std::size_t count = run.groups.size();
+  const auto jacobian = [&](std::size_t g) -> const AttitudeJacobian& {
+    return run.groups[g].scene->stars()[run.groups[g].targets[target]].motion;
+  };
+  std::vector<CrossMotion> motions(count * count);
+  for (std::size_t g = 0; g < count; ++g) {
+    const AttitudeCovariance& error = corrections[g]->error();
+    if (corrections[g]->is_measured()) {
+      const MotionCovariance own = motion_covariance(jacobian(g), error);
+      motions[g * count + g].exposure = {.xx = own.sxx, .xy = own.sxy, .yx = own.sxy, .yy = own.syy};
+      continue;
+    }
+    const AttitudeVariance shared{error.yaw_yaw, error.pitch_pitch, error.roll_roll};
+    for (std::size_t h = 0; h < count; ++h)
+      motions[g * count + h].exposure = cross_covariance(jacobian(g), jacobian(h), shared);
+  }
+  return motions;
+}
+
 }  // namespace astroid

@@ -187,6 +187,10 @@ GroundSegment perfect_ground_segment(const PreparedRun& run) {
     segment.grounds.push_back(perfect_ground(*group.scene, group.targets));
     segment.estimators.push_back(
         build_estimators(*group.scene->layout(), segment.grounds.back().model, group.scene->mission().photometry));
+    const bool corrects = group.scene->mission().photometry.jitter_correction != JitterCorrection::kNone;
+    segment.corrections.push_back(corrects ? std::make_shared<const AttitudeCorrection>(
+                                                 *group.scene, segment.grounds.back().model, segment.estimators.back())
+                                           : nullptr);
   }
   return segment;
 }
@@ -196,7 +200,11 @@ std::vector<StreamGroup> stream_groups(const PreparedRun& run, const GroundSegme
   for (std::size_t g = 0; g < run.groups.size(); ++g) {
     const std::span<const StarEstimator> estimators =
         ground.estimators.empty() ? std::span<const StarEstimator>() : std::span(ground.estimators[g]);
-    groups.push_back({run.groups[g].scene, run.groups[g].plan, estimators, run.groups[g].share});
+    groups.push_back({.scene = run.groups[g].scene,
+                      .plan = run.groups[g].plan,
+                      .estimators = estimators,
+                      .share = run.groups[g].share,
+                      .correction = ground.corrections.empty() ? nullptr : ground.corrections[g]});
   }
   return groups;
 }
@@ -218,7 +226,9 @@ Ground perfect_ground(const Scene& scene, std::span<const std::size_t> targets) 
   ground.model.faintest_electrons = all.empty() ? 0.0 : faintest_of(scene, all);
   ground.model.contamination_limit = scene.mission().analysis.uncontaminated_spr;
   const RunSetup setup = run_setup(scene.mission());
-  ground.model.motion = motion_like_pixel_noise(mean_bin_motion(scene, all), setup.exposures_per_bin, setup.cameras);
+  // Jitter correction leaves so little of the motion that weights need not mind it.
+  if (scene.mission().photometry.jitter_correction == JitterCorrection::kNone)
+    ground.model.motion = motion_like_pixel_noise(mean_bin_motion(scene, all), setup.exposures_per_bin, setup.cameras);
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
   believe_readout(scene, ground.model);

@@ -12,6 +12,7 @@
 #include "astroid/analysis/target_metrics.hpp"
 #include "astroid/analysis/verdict.hpp"
 #include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/statistics/quantiles.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/pipeline/field.hpp"
@@ -114,6 +115,33 @@ std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path&
   return examples;
 }
 
+/// What jitter correction did, and what it brought.
+std::vector<std::string> jitter_correction_notes(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
+  const std::shared_ptr<const AttitudeCorrection>& correction = run.ground.corrections.front();
+  if (correction == nullptr) return {};
+  std::vector<double> before;
+  std::vector<double> after;
+  std::vector<double> brightest;
+  for (const TargetMetrics& t : targets)
+    if (is_clean(t) && std::isfinite(t.nsr_1h_uncorrected.value)) brightest.push_back(t.mag);
+  std::ranges::sort(brightest);
+  constexpr std::size_t kShown = 100;  // in which motion shows the most
+  const double limit = brightest.empty() ? 0.0 : brightest[std::min(kShown, brightest.size()) - 1];
+  for (const TargetMetrics& t : targets)
+    if (is_clean(t) && std::isfinite(t.nsr_1h_uncorrected.value) && t.mag <= limit) {
+      before.push_back(t.nsr_1h_uncorrected.value);
+      after.push_back(t.nsr_1h_measured.value);
+    }
+  std::string text = "motion was taken out of the light curves " + correction->description();
+  if (!before.empty())
+    text += fmt::format(
+        "; the noise in {:g} s of the {} brightest unsaturated targets (to mag {:.2f}) fell from {:.4g} to "
+        "{:.4g} ppm (medians, simulated cameras)",
+        run.prepared.scene().mission().analysis.bin.value(), before.size(), limit, quantile(before, 0.5).value,
+        quantile(after, 0.5).value);
+  return {text};
+}
+
 std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
   std::vector<std::string> warnings = run.prepared.notes;
   for (const PreparedGroup& group : run.prepared.groups)
@@ -145,6 +173,7 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
     shares.push_back(group.share);
   }
   const AttitudeSharing attitude(run.prepared);
+  const bool is_corrected = run.ground.corrections.front() != nullptr;
   std::vector<TargetMetrics> targets;
   for (std::size_t t = 0; t < groups.front().targets.size(); ++t) {
     std::vector<GroupView> views;
@@ -154,10 +183,16 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
       stars.push_back(truth[g][groups[g].targets[t]]);
     }
     const StarEstimator estimator = mean_estimator(views);
-    const PredictedNoise noise =
-        predict_mean_noise(estimator, mean_motion_noise(views, attitude.of_target(t), setup), setup);
+    MotionNoise motion = mean_motion_noise(views, attitude.of_target(t), setup);
+    if (is_corrected) {
+      const MotionNoise error =
+          mean_motion_noise(views, attitude_error_motion(run.prepared, run.ground.corrections, t), setup);
+      motion = after_correction(motion, error, run.ground.corrections.front()->is_measured(), setup.exposures_per_bin);
+    }
+    const PredictedNoise noise = predict_mean_noise(estimator, motion, setup);
     TargetMetrics target = predict_mean_target(mean_truth(stars, shares), estimator, noise, setup);
     add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
+    if (is_corrected && t < run.stream.measured.size()) add_uncorrected(target, run.stream.measured[t]);
     targets.push_back(std::move(target));
   }
   return targets;
@@ -192,6 +227,7 @@ ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& r
     input.provenance.emplace_back(component.name, component.version);
   input.provenance.emplace_back("seed", fmt::format("{}", mission.simulation.seed));
   input.warnings = warnings_of(run, targets);
+  for (const std::string& note : jitter_correction_notes(run, targets)) input.warnings.push_back(note);
   if (run.stream.first_frame.size() > 0) {
     input.image = run.stream.first_frame.view();
     input.image_caption =

@@ -12,6 +12,7 @@
 
 #include "astroid/analysis/nsr_accumulator.hpp"
 #include "astroid/photometry/estimator.hpp"
+#include "astroid/pipeline/attitude_correction.hpp"
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -41,6 +42,7 @@ struct StreamTimings {
 /// What a stream leaves besides its files.
 struct StreamResult {
   std::vector<SeriesSummary> series;    ///< of each target, mean of the simulated cameras
+  std::vector<SeriesSummary> measured;  ///< the same before jitter correction; empty without one
   std::vector<double> reference;        ///< flux the series are relative to, e- per exposure, mean of the cameras
   std::vector<std::uint32_t> flags;     ///< measurement_flag bits seen in any exposure, of each target
   std::vector<double> flagged_share;    ///< share of exposures of a target with any flag
@@ -56,8 +58,9 @@ struct StreamResult {
 struct StreamGroup {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Plan> plan;
-  std::span<const StarEstimator> estimators;  ///< of the targets, which are the same stars in every group
-  double share = 1.0;                         ///< of the group in all cameras
+  std::span<const StarEstimator> estimators;               ///< of the targets, which are the same stars in every group
+  double share = 1.0;                                      ///< of the group in all cameras
+  std::shared_ptr<const AttitudeCorrection> correction{};  ///< of the targets' fluxes; null: none
 };
 
 /// Runs all exposures of all simulated cameras, numbered through the groups by group_of_camera().

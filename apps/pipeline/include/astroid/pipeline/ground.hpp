@@ -8,6 +8,7 @@
 
 #include "astroid/photometry/calibration.hpp"
 #include "astroid/photometry/estimator.hpp"
+#include "astroid/pipeline/attitude_correction.hpp"
 #include "astroid/pipeline/exposure_stream.hpp"
 #include "astroid/pipeline/run.hpp"
 #include "astroid/sim/scene.hpp"
@@ -30,8 +31,9 @@ Ground perfect_ground(const Scene& scene, std::span<const std::size_t> targets);
 
 /// What the ground believes of the cameras of every group, and what it measures their images with.
 struct GroundSegment {
-  std::vector<Ground> grounds;                         ///< [group]
-  std::vector<std::vector<StarEstimator>> estimators;  ///< [group][target]
+  std::vector<Ground> grounds;                                         ///< [group]
+  std::vector<std::vector<StarEstimator>> estimators;                  ///< [group][target]
+  std::vector<std::shared_ptr<const AttitudeCorrection>> corrections;  ///< [group]: of jitter; null: none
 };
 /// @param run  must outlive the result.
 GroundSegment perfect_ground_segment(const PreparedRun& run);

@@ -1,0 +1,49 @@
+// Jitter correction: the attitude of each exposure as the ground knows it, taken out of every flux.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "astroid/core/frame.hpp"
+#include "astroid/core/random.hpp"
+#include "astroid/photometry/attitude_response.hpp"
+#include "astroid/photometry/attitude_sensor.hpp"
+#include "astroid/sim/scene.hpp"
+
+namespace astroid {
+
+/// What the ground believes of the attitude of exposures of one group of cameras, and how targets' fluxes follow it.
+///
+/// Either the spacecraft tells it, with an error of Photometry/Knowledge/Attitude that all cameras share and that is
+/// new in every exposure, or each camera measures it by its own bright targets.
+/// @source F130, F131
+class AttitudeCorrection {
+ public:
+  /// @param estimators  of the targets.  @throws InputError when there is no star to measure the attitude by.
+  AttitudeCorrection(const Scene& scene, const GroundModel& model, std::span<const StarEstimator> estimators);
+
+  [[nodiscard]] bool is_measured() const { return sensor_.has_value(); }
+  /// @param truth       mean attitude of the exposure.
+  /// @param calibrated  its frame, as fluxes are measured in it.
+  [[nodiscard]] Attitude attitude(std::int64_t exposure, const Attitude& truth, const Frame& calibrated) const;
+
+  /// Of each target.
+  [[nodiscard]] std::span<const AttitudeResponse> responses() const { return responses_; }
+  /// Error of attitude(): of each camera its own where it is measured, else the same in all of them.
+  [[nodiscard]] const AttitudeCovariance& error() const { return error_; }
+  /// For the plan.
+  [[nodiscard]] std::string description() const;
+
+ private:
+  std::vector<AttitudeResponse> responses_;
+  std::optional<AttitudeSensor> sensor_;
+  AttitudeCovariance error_;
+  RandomStream stream_;
+  double known_rms_;  // arcsec
+};
+
+}  // namespace astroid
