@@ -117,27 +117,53 @@ int run_command_line(int argc, char** argv) {
   sub = app.add_subcommand("photometry", "fluxes of stars in any FITS images, found there or given by a catalogue");
   sub->add_option("IMAGE", photometry_options.images, "FITS images")->required();
   sub->add_option("--catalogue", photometry_options.catalogue,
-                  "positions: a catalogue with ra,dec (the image needs a WCS) or x,y; without it stars are found and "
-                  "fitted together, which needs --method psf and --psf")
+                  "positions: a catalogue with ra,dec (the image needs a WCS) or x,y; without it stars are found")
       ->type_name("FILE");
-  sub->add_option("--method", photometry_options.method,
-                  "aperture, mask (optimal binary), weighted, or psf (neighbours fitted too)")
-      ->check(CLI::IsMember({"aperture", "mask", "weighted", "psf"}))
+  sub->add_option(
+         "--method", photometry_options.method,
+         "aperture, mask (optimal binary), weighted, psf (neighbours fitted too), or auto: what suits the scene, "
+         "and it says why")
+      ->check(CLI::IsMember({"auto", "aperture", "mask", "weighted", "psf"}))
       ->capture_default_str();
   sub->add_option("--psf", photometry_options.psf, "a FITS file, or gaussian:SIGMA_PX; all but apertures need it")
       ->type_name("PSF");
-  sub->add_option("--radius", photometry_options.radius, "aperture radius")->type_name("PX");
-  sub->add_option("--background", photometry_options.background, "local, mesh, or a known level in the image's unit")
-      ->capture_default_str();
+  sub->add_option("--threshold", photometry_options.threshold,
+                  "of stars that are found, in units of their noise (default: 5)")
+      ->type_name("SIGMA");
+  sub->add_option("--radius", photometry_options.radius,
+                  "of apertures (default: 3; of stars that are found 1.2 FWHM, in a crowd 0.8)")
+      ->type_name("PX");
+  sub->add_option(
+         "--correct-to", photometry_options.correct_to,
+         "correct apertures to this radius by the growth of bright stars (default: 4 FWHM where the radius was "
+         "not given either)")
+      ->type_name("PX");
+  sub->add_option("--background", photometry_options.background,
+                  "local, mesh, or a known level in the image's unit (default: local; mesh for stars that are found)");
+  sub->add_option("--annulus", photometry_options.annulus, "radii of the local background (default: 5 8)")
+      ->type_name("PX PX")
+      ->expected(2);
+  sub->add_option("--clip", photometry_options.clip,
+                  "leave out pixels of the annulus so many sigma from its median (default: 3; 0: none)")
+      ->type_name("SIGMA");
+  sub->add_option(
+         "--residual", photometry_options.residual,
+         "write the image without its background and its stars, as their PSF says (without --psf a Gaussian of "
+         "the measured width)")
+      ->type_name("FILE");
   sub->add_option("--gain", photometry_options.gain, "if the header does not say it")->type_name("E-/ADU");
   sub->add_option("--read-noise", photometry_options.read_noise, "if the header does not say it")->type_name("E-");
+  sub->add_option("--bias", photometry_options.bias,
+                  "pedestal without photon noise, if neither header nor prescan says it (default: 0)")
+      ->type_name("ADU");
   sub->add_flag("--ignore-overscan", photometry_options.ignore_overscan,
                 "do not subtract what OVERSCAN extensions show from the columns of the image");
   sub->add_option("--saturation", photometry_options.saturation, "if the header does not say it")->type_name("ADU");
   sub->add_option("--zero-point", photometry_options.zero_point, "magnitude of one electron per second")
       ->type_name("MAG");
   sub->add_option("--exposure-time", photometry_options.exposure_time, "if the header does not say it")->type_name("S");
-  sub->add_option("-o,--output", photometry_options.output, "table of fluxes")
+  sub->add_option("-o,--output", photometry_options.output,
+                  "table of fluxes, CSV or FITS by its name; how they were measured goes to FILE.json beside a CSV")
       ->type_name("FILE")
       ->capture_default_str();
   add_overwrite(sub, photometry_options.overwrite);

@@ -17,6 +17,7 @@
 #include "astroid/core/run_time.hpp"
 #include "astroid/core/sphere.hpp"
 #include "astroid/core/throughput.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
@@ -62,7 +63,6 @@ Place place_in(const std::array<double, N>& nodes, double value) {
   return {below, std::clamp((value - nodes[below]) / (nodes[below + 1] - nodes[below]), 0.0, 1.0)};
 }
 
-constexpr double kSecondsPerDay = 86400.0;
 constexpr double kArcsecPerDegree = 3600.0;
 
 }  // namespace

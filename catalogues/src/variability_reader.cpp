@@ -9,12 +9,12 @@
 #include "astroid/catalogues/variability.hpp"
 #include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
 namespace {
 
-constexpr double kSecondsPerDay = 86400.0;
 constexpr double kSecondsPerHour = 3600.0;
 constexpr double kPpm = 1e-6;
 constexpr double kDegreesPerTurn = 360.0;

@@ -8,13 +8,13 @@
 #include <cstdint>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
 namespace {
 
 constexpr double kMjdOfUnixEpoch = 40587.0;  // 1970-01-01T00:00, days
-constexpr double kSecondsPerDay = 86400.0;
 constexpr int kSecondsPerHour = 3600;
 constexpr int kSecondsPerMinute = 60;
 

@@ -10,6 +10,8 @@
 
 #include "astroid/core/camera_groups.hpp"
 #include "astroid/core/response.hpp"
+#include "astroid/core/run_time.hpp"
+#include "astroid/core/units.hpp"
 #include "configuration_draft.hpp"
 
 namespace astroid::configuration {
@@ -112,13 +114,11 @@ void check_cmos(const Mission& m, Checker& checker) {
 
 /// A turn between quarters puts every star elsewhere, which one run cannot show.
 void check_quarters(const Mission& m, Checker& checker) {
-  constexpr double kSecondsPerDay = 86400.0;
   const double length = m.satellite.quarter_days * kSecondsPerDay;
   const bool turns = m.satellite.repointing.turn.value() != 0.0;
   checker.require(m.simulation.quarter == 0 || length > 0.0, "Simulation/Quarter", "Satellite/Quarter",
                   "is not the first, though the spacecraft is never pointed anew", "0, or Satellite/Quarter above 0 d");
-  const double end =
-      static_cast<double>(m.simulation.exposures - 1) * m.simulation.cycle.value() + m.simulation.exposure_time.value();
+  const double end = end_of_run(m.simulation).value();
   checker.require(
       !turns || length <= 0.0 || end <= length, "Simulation/Exposures", "Satellite/Repointing/Turn",
       fmt::format("the run lasts {:.6g} d, beyond the end of its quarter after {:.6g} d, when the spacecraft "

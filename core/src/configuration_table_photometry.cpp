@@ -1,3 +1,4 @@
+#include "astroid/core/units.hpp"
 #include "configuration_parameter.hpp"
 
 namespace astroid::configuration {
@@ -32,6 +33,15 @@ std::vector<Parameter> photometry_parameters() {
        .meaning = "Side of the square window in which a mask may choose pixels and PSF weights are.",
        .example = "6",
        .assign = [](Mission& m, const Value& v) { m.photometry.mask_window = static_cast<int>(v.integer); }},
+      {.path = "Photometry/MaskRefresh",
+       .unit = "d",
+       .range = from_to(0, 10000),
+       .fallback = "0",
+       .meaning = "Apertures, masks and weights are made anew so often, for the places that drift and aberration lead "
+                  "the stars "
+                  "to in the middle of each stretch; 0: once, for the nominal pointing.",
+       .example = "90",
+       .assign = [](Mission& m, const Value& v) { m.photometry.mask_refresh = Seconds(v.real * kSecondsPerDay); }},
       {.path = "Photometry/MaskReach",
        .unit = "px",
        .range = from_to(0, 10000),

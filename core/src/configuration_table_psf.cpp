@@ -60,7 +60,8 @@ std::vector<Parameter> psf_parameters() {
        .unit = "px",
        .range = from_to(2, 90),
        .fallback = "30",
-       .meaning = "Half the side of the square beyond which the light of a Moffat or Airy PSF is left out.",
+       .meaning =
+           "Distance from the star at which the light of a Moffat or Airy PSF ends; it fades out over the last 6 px.",
        .example = "30",
        .assign = [](Mission& m, const Value& v) { m.psf.reach = static_cast<int>(v.integer); }},
       {.path = "PSF/ChargeDiffusion",

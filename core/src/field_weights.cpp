@@ -1,9 +1,12 @@
 #include "field_weights.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 
 namespace astroid::detail {
@@ -121,6 +124,23 @@ void FieldWeights::gradient(PixelPosition position, std::span<double> along_x, s
   }
   if (p.x != position.x) std::fill(along_x.begin(), along_x.end(), 0.0);
   if (p.y != position.y) std::fill(along_y.begin(), along_y.end(), 0.0);
+}
+
+void require_field(std::span<const FieldPsfTable> tables) {
+  std::vector<Problem> problems;
+  const auto refuse = [&problems](const std::string& value, const char* expected, const char* message) {
+    problems.push_back({.parameter = "PSF/File", .value = value, .expected = expected, .message = message});
+  };
+  if (tables.empty()) refuse("no table", "at least one table with its place in the field", "the PSF cannot be made");
+  for (std::size_t i = 0; i < tables.size(); ++i) {
+    const PixelPosition& p = tables[i].position;
+    const std::string place = fmt::format("({}, {})", p.x, p.y);
+    if (!std::isfinite(p.x) || !std::isfinite(p.y)) refuse(place, "two pixel coordinates", "a table has no place");
+    for (std::size_t j = 0; j < i; ++j)
+      if (tables[j].position.x == p.x && tables[j].position.y == p.y)
+        refuse(place, "one table a place", "two tables have the same place");
+  }
+  if (!problems.empty()) throw InputError(std::move(problems));
 }
 
 }  // namespace astroid::detail

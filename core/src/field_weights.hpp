@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "astroid/core/geometry.hpp"
+#include "astroid/core/psf.hpp"
 
 namespace astroid::detail {
 
@@ -36,5 +37,8 @@ class FieldWeights {
   std::size_t rows_ = 0;         // basis functions: one a node, and 1 or 1, x, y
   std::vector<double> inverse_;  // (rows, nodes)
 };
+
+/// @throws InputError when there is no table, or one has no place, or two share one.
+void require_field(std::span<const FieldPsfTable> tables);
 
 }  // namespace astroid::detail

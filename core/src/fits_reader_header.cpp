@@ -29,6 +29,14 @@ std::optional<double> FitsReader::number(int unit, const std::string& key) const
   return value;
 }
 
+std::optional<std::string> FitsReader::unit_of(int unit, const std::string& key) const {
+  state_->go_to(unit);
+  std::array<char, FLEN_COMMENT> value{};
+  const int status = state_->attempt(&ffgunt, key.c_str(), value.data());
+  if (status != 0 || value.front() == '\0') return std::nullopt;
+  return std::string(value.data());
+}
+
 std::optional<std::int64_t> FitsReader::integer(int unit, const std::string& key) const {
   state_->go_to(unit);
   LONGLONG value = 0;

@@ -42,22 +42,36 @@ void refuse_unusable(const PsfTable& table, double total) {
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
-// Coefficients c[-1 … n+1] of the natural cubic B-spline through the values at the knots 0 … n, in place: the values
-// stand at 1 … n+1 of a row of n + 3. Natural: c[-1] - 2 c[0] + c[1] = 0, so c[0] is the value itself.
-void interpolate(std::span<double> row, std::span<double> workspace) {
-  const std::size_t last = row.size() - 2;  // where the last value stands
+// Many splines in memory: the values of a knot side by side, knots `stride` apart.
+struct Splines {
+  double* first;
+  std::size_t knots, stride, lanes;
+};
+
+// Coefficients c[-1 … n+1] of natural cubic B-splines through the values at the knots 0 … n, in place: the values stand
+// at 1 … n+1 of n + 3 knots. Natural: c[-1] - 2 c[0] + c[1] = 0, so c[0] is the value itself.
+void interpolate(const Splines& splines) {
+  const std::size_t lanes = splines.lanes;
+  const std::size_t last = splines.knots - 2;  // where the last value stands
+  const auto knot = [&](std::size_t k) { return splines.first + k * splines.stride; };
   // Thomas' algorithm for c[k-1] + 4 c[k] + c[k+1] = 6 y[k] between the known ends.
-  workspace[1] = 0.0;
-  double before = row[1];
+  std::vector<double> pivots(splines.knots, 0.0);
   for (std::size_t k = 2; k < last; ++k) {
-    const double pivot = 1.0 / (4.0 - workspace[k - 1]);
-    workspace[k] = pivot;
-    before = (6.0 * row[k] - before) * pivot;
-    row[k] = before;
+    const double pivot = 1.0 / (4.0 - pivots[k - 1]);
+    pivots[k] = pivot;
+    const double* before = knot(k - 1);
+    double* here = knot(k);
+    for (std::size_t i = 0; i < lanes; ++i) here[i] = (6.0 * here[i] - before[i]) * pivot;
   }
-  for (std::size_t k = last - 1; k > 1; --k) row[k] -= workspace[k] * row[k + 1];
-  row.front() = 2.0 * row[1] - row[2];
-  row.back() = 2.0 * row[last] - row[last - 1];
+  for (std::size_t k = last - 1; k > 1; --k) {
+    const double* after = knot(k + 1);
+    double* here = knot(k);
+    for (std::size_t i = 0; i < lanes; ++i) here[i] -= pivots[k] * after[i];
+  }
+  for (std::size_t i = 0; i < lanes; ++i) {
+    knot(0)[i] = 2.0 * knot(1)[i] - knot(2)[i];
+    knot(last + 1)[i] = 2.0 * knot(last)[i] - knot(last - 1)[i];
+  }
 }
 
 }  // namespace
@@ -84,16 +98,8 @@ FluxSpline::FluxSpline(const PsfTable& table)
       corners[i] = row.value();
     }
   }
-  std::vector<double> workspace(std::max(nx_, ny_) + 3);
-  for (std::size_t j = 1; j < ny_ + 2; ++j) {
-    interpolate(std::span(coefficients_).subspan(j * stride, stride), workspace);
-  }
-  std::vector<double> column(ny_ + 3);
-  for (std::size_t i = 0; i < stride; ++i) {
-    for (std::size_t j = 0; j < ny_ + 3; ++j) column[j] = coefficients_[j * stride + i];
-    interpolate(column, workspace);
-    for (std::size_t j = 0; j < ny_ + 3; ++j) coefficients_[j * stride + i] = column[j];
-  }
+  for (std::size_t j = 1; j < ny_ + 2; ++j) interpolate({&coefficients_[j * stride], stride, 1, 1});
+  interpolate({coefficients_.data(), ny_ + 3, stride, stride});
 }
 
 FluxSpline::Edge FluxSpline::edge(double offset, double centre, std::size_t samples) const {
@@ -106,6 +112,20 @@ FluxSpline::Edge FluxSpline::edge(double offset, double centre, std::size_t samp
   return {static_cast<std::size_t>(interval),
           {kSixth * s * s * s, kSixth * (4.0 - 3.0 * t * t * (1.0 + s)), kSixth * (4.0 - 3.0 * s * s * (1.0 + t)),
            kSixth * t * t * t}};
+}
+
+void FluxSpline::at_edges(std::span<const Edge> edges, std::span<double> rows) const {
+  const std::size_t stride = nx_ + 3;
+  ASTROID_CHECK_EQ(rows.size(), coefficient_rows() * edges.size());
+  double* out = rows.data();
+  for (std::size_t j = 0; j < ny_ + 3; ++j) {
+    const double* row = &coefficients_[j * stride];
+    for (const Edge& edge : edges) {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < 4; ++k) sum += edge.weights[k] * row[edge.first + k];
+      *out++ = sum;
+    }
+  }
 }
 
 void FluxSpline::integrate_rows(const Edge& left, const Edge& right, std::span<double> rows) const {

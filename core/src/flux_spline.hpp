@@ -29,6 +29,9 @@ class FluxSpline {
   [[nodiscard]] Edge x_edge(double offset) const { return edge(offset, centre_x_, nx_); }
   [[nodiscard]] Edge y_edge(double offset) const { return edge(offset, centre_y_, ny_); }
 
+  /// C's coefficients combined along x at each of the edges.  @param rows  [out] shape (coefficient_rows(),
+  /// edges.size())
+  void at_edges(std::span<const Edge> edges, std::span<double> rows) const;
   /// C's coefficients combined along x to the flux between two edges, one number per coefficient row.
   void integrate_rows(const Edge& left, const Edge& right, std::span<double> rows) const;
   /// Those combined along y.

@@ -11,7 +11,6 @@ namespace astroid {
 namespace {
 
 constexpr double kRootTwo = 1.41421356237309504880168872420969808;
-constexpr double kFwhmPerSigma = 2.35482004503094938202313865291939;  // 2 sqrt(2 ln 2)
 
 // Probability of n under a Poisson law of this mean, for n the integer part of the mean.
 double poisson_mode_probability(double mean) {

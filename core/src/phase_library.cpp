@@ -30,36 +30,71 @@ PhaseLibrary::PhaseLibrary(const FluxSpline& spline, int phases, PixelResponse r
       response_(std::move(response)),
       x_(extent(spline.lower().x, spline.upper().x)),
       y_(extent(spline.lower().y, spline.upper().y)) {
+  std::vector<double> shifts(static_cast<std::size_t>(phases));
+  for (std::size_t p = 0; p < shifts.size(); ++p) shifts[p] = static_cast<double>(p) * (1.0 / phases);
+  images_ = exact_images(spline, shifts);
+}
+
+std::vector<double> PhaseLibrary::exact_images(const FluxSpline& spline, std::span<const double> shifts) const {
   const auto nx = static_cast<std::size_t>(x_.size);
   const auto ny = static_cast<std::size_t>(y_.size);
-  const auto n = static_cast<std::size_t>(phases);
+  const std::size_t n = shifts.size();
   const auto cells = static_cast<std::size_t>(response_.cells);
-  images_.resize(n * n * nx * ny);
-  const double step = 1.0 / phases;
+  std::vector<double> images(n * n * nx * ny);
   const double cell = 1.0 / response_.cells;
   // Edge `i` of the cells, cells of them to a pixel.
-  const auto edge_at = [&](const Extent& e, std::size_t i, std::size_t phase) {
-    return e.first + static_cast<double>(i) * cell - 0.5 - static_cast<double>(phase) * step;
+  const auto edge_at = [&](const Extent& e, std::size_t i, double shift) {
+    return e.first + static_cast<double>(i) * cell - 0.5 - shift;
   };
+  const std::size_t x_count = nx * cells + 1;
   const std::size_t y_count = ny * cells + 1;
   std::vector<FluxSpline::Edge> y_edges(n * y_count);
   for (std::size_t q = 0; q < n; ++q) {
-    for (std::size_t j = 0; j < y_count; ++j) y_edges[q * y_count + j] = spline.y_edge(edge_at(y_, j, q));
+    for (std::size_t j = 0; j < y_count; ++j) y_edges[q * y_count + j] = spline.y_edge(edge_at(y_, j, shifts[q]));
   }
-  std::vector<double> rows(spline.coefficient_rows());
-  for (std::size_t p = 0; p < n; ++p) {
-    for (std::size_t i = 0; i < nx * cells; ++i) {
-      spline.integrate_rows(spline.x_edge(edge_at(x_, i, p)), spline.x_edge(edge_at(x_, i + 1, p)), rows);
-      for (std::size_t q = 0; q < n; ++q) {
-        const FluxSpline::Edge* edges = &y_edges[q * y_count];
-        double* column = &images_[(q * n + p) * nx * ny + i / cells];
-        for (std::size_t j = 0; j < ny * cells; ++j) {
-          column[j / cells * nx] += response_.at(static_cast<int>(i % cells), static_cast<int>(j % cells)) *
-                                    FluxSpline::integrate_column(rows, edges[j], edges[j + 1]);
+  // Shifts along x in groups, whose edges share the cache lines of the coefficients.
+  constexpr std::size_t kMostInGroup = 8;
+  constexpr std::size_t kGroupBytes = 4UL * 1024UL * 1024UL;
+  const std::size_t group =
+      std::clamp<std::size_t>(kGroupBytes / (spline.coefficient_rows() * x_count * sizeof(double)), 1, kMostInGroup);
+  std::vector<FluxSpline::Edge> edges;
+  std::vector<double> rows;
+  std::vector<double> below;
+  std::vector<double> above;
+  for (std::size_t p0 = 0; p0 < n; p0 += group) {
+    const std::size_t p1 = std::min(p0 + group, n);
+    edges.clear();
+    for (std::size_t p = p0; p < p1; ++p)
+      for (std::size_t i = 0; i < x_count; ++i) edges.push_back(spline.x_edge(edge_at(x_, i, shifts[p])));
+    rows.resize(spline.coefficient_rows() * edges.size());
+    spline.at_edges(edges, rows);
+    below.resize(edges.size());
+    above.resize(edges.size());
+    // C along the line of an edge in y, at all edges in x.
+    const auto combine = [&](const FluxSpline::Edge& edge, std::vector<double>& line) {
+      const double* from = &rows[edge.first * edges.size()];
+      const std::size_t count = edges.size();
+      for (std::size_t e = 0; e < count; ++e)
+        line[e] = edge.weights[0] * from[e] + edge.weights[1] * from[e + count] +
+                  edge.weights[2] * from[e + 2 * count] + edge.weights[3] * from[e + 3 * count];
+    };
+    for (std::size_t q = 0; q < n; ++q) {
+      combine(y_edges[q * y_count], below);
+      for (std::size_t j = 0; j < ny * cells; ++j) {
+        combine(y_edges[q * y_count + j + 1], above);
+        for (std::size_t e = 0; e < edges.size(); ++e) below[e] = above[e] - below[e];
+        for (std::size_t p = p0; p < p1; ++p) {
+          const double* strip = &below[(p - p0) * x_count];
+          double* row = &images[((q * n + p) * ny + j / cells) * nx];
+          for (std::size_t i = 0; i < nx * cells; ++i)
+            row[i / cells] +=
+                response_.at(static_cast<int>(i % cells), static_cast<int>(j % cells)) * (strip[i + 1] - strip[i]);
         }
+        std::swap(below, above);
       }
     }
   }
+  return images;
 }
 
 const double* PhaseLibrary::image(int phase_x, int phase_y) const {
@@ -123,6 +158,8 @@ void PhaseLibrary::integrate(PixelPosition star, Rectangle box, std::span<double
                  double* to = fractions.data() + out;
                  for (std::size_t i = 0; i < count; ++i) to[i] += weight * from[i];
                });
+  // Where light ends, interpolation overshoots by what it errs.
+  for (double& fraction : fractions) fraction = std::max(fraction, 0.0);
 }
 
 void PhaseLibrary::add(PixelPosition star, double electrons, Rectangle box,
@@ -160,44 +197,52 @@ void PhaseLibrary::integrate_gradient(PixelPosition star, Rectangle box, std::sp
                });
 }
 
-double PhaseLibrary::exact_flux(const FluxSpline& spline, PixelPosition star, int x, int y) const {
-  constexpr double kHalfAperture = 1.5;
-  constexpr int kSide = 3;
-  const double cell = 1.0 / response_.cells;
-  double sum = 0.0;
-  const bool uniform = response_.is_uniform();
-  const int cells = uniform ? 1 : kSide * response_.cells;
-  const double size = uniform ? kSide : cell;
-  for (int j = 0; j < cells; ++j)
-    for (int i = 0; i < cells; ++i) {
-      const double left = x - kHalfAperture - star.x + i * size;
-      const double bottom = y - kHalfAperture - star.y + j * size;
-      sum += (uniform ? 1.0 : response_.at(i % response_.cells, j % response_.cells)) *
-             spline.flux({left, bottom}, {left + size, bottom + size});
-    }
-  return sum;
+Rectangle PhaseLibrary::interior() const {
+  constexpr int kSteps = 4;   // px: the border, and as far as the light of the taps reaches across it
+  constexpr int kFewest = 4;  // px that are judged of a small table too: the star's, wherever it is in it
+  const auto steps = [&](int size) { return std::clamp((size - kFewest) / 2, 0, kSteps); };
+  const int x = steps(x_.size);
+  const int y = steps(y_.size);
+  return {x_.first + x, y_.first + y, x_.size - 2 * x, y_.size - 2 * y};
 }
 
-double PhaseLibrary::measured_error(const FluxSpline& spline) const {
+double PhaseLibrary::measured_error(const FluxSpline& spline, const Judged& judged) const {
   constexpr int kMostPositions = 16;  // per axis, spread over the pixel
-  const int positions = std::min(phases_, kMostPositions);
-  std::array<double, 9> fractions{};
+  constexpr int kFewerPositions = 8;  // of large images
+  constexpr int kLarge = 4096;        // px
+  constexpr int kSmallestSquare = 2;
+  constexpr int kLargestSquare = 3;
+  const int positions = std::min(phases_, x_.size * y_.size > kLarge ? kFewerPositions : kMostPositions);
+  std::vector<double> shifts(static_cast<std::size_t>(positions));
+  for (int k = 0; k < positions; ++k) {
+    const int phase = k * phases_ / positions;
+    shifts[static_cast<std::size_t>(k)] = (phase + 0.5) / phases_;
+  }
+  const std::vector<double> exact = exact_images(spline, shifts);
+  const Rectangle box{x_.first, y_.first, x_.size, y_.size};
+  const Rectangle outer = intersect(box, judged.outer);
+  std::vector<double> fractions(box.size());
   double worst = 0.0;
-  for (int j = 0; j < positions; ++j) {
-    for (int i = 0; i < positions; ++i) {
-      const auto midway = [&](int k) {
-        const int phase = k * phases_ / positions;
-        return (phase + 0.5) / phases_;
-      };
-      const PixelPosition star{midway(i), midway(j)};
-      const int x = star.x < 0.5 ? 0 : 1;
-      const int y = star.y < 0.5 ? 0 : 1;
-      integrate(star, {x - 1, y - 1, 3, 3}, fractions);
-      double flux = 0.0;
-      for (const double fraction : fractions) flux += fraction;
-      const double exact = exact_flux(spline, star, x, y);
-      if (exact > 0.0) worst = std::max(worst, std::abs(flux / exact - 1.0));
-    }
+  for (std::size_t k = 0; k < shifts.size() * shifts.size(); ++k) {
+    const double* truth = &exact[k * box.size()];
+    integrate({shifts[k % shifts.size()], shifts[k / shifts.size()]}, box, fractions);
+    const auto judge = [&](const Rectangle& square) {
+      double light = 0.0;
+      double error = 0.0;
+      for (int y = square.y0; y < square.y1(); ++y)
+        for (int x = square.x0; x < square.x1(); ++x) {
+          const auto i = static_cast<std::size_t>((y - box.y0) * box.nx + x - box.x0);
+          light += truth[i];
+          error += fractions[i] - truth[i];
+        }
+      worst = std::max(worst, std::abs(error) / std::max(std::abs(light), judged.least));
+    };
+    for (int size = kSmallestSquare; size <= kLargestSquare; ++size)
+      for (int y = outer.y0; y + size <= outer.y1(); ++y)
+        for (int x = outer.x0; x + size <= outer.x1(); ++x) {
+          const Rectangle square{x, y, size, size};
+          if (intersect(square, judged.hole).empty()) judge(square);
+        }
   }
   return worst;
 }

@@ -32,9 +32,18 @@ class PhaseLibrary {
   /// Memory of a library of so many phases, bytes.
   static double bytes(const FluxSpline& spline, int phases);
 
-  /// Largest relative error of the flux in the 3 x 3 pixels around a star, over stars midway between the phases, where
-  /// the interpolation is at its worst.
-  [[nodiscard]] double measured_error(const FluxSpline& spline) const;
+  /// Where errors are judged.
+  struct Judged {
+    double least = 0.0;  ///< share of the star's flux: a square with less light is judged as if it had this much
+    Rectangle outer;     ///< px relative to the star's: squares lie within
+    Rectangle hole;      ///< and touch none of these
+  };
+  /// The pixels of the library but those at the border of the table, where its light may end in a step.
+  [[nodiscard]] Rectangle interior() const;
+  /// Largest error of the light in squares of 2 and 3 px, relative to that light, wherever they lie in the star's
+  /// image: about the star, or in its wings where a fainter star may be. Of stars midway between the phases, where the
+  /// interpolation is at its worst.
+  [[nodiscard]] double measured_error(const FluxSpline& spline, const Judged& judged) const;
 
  private:
   static constexpr std::size_t kTaps = 4;
@@ -62,8 +71,8 @@ class PhaseLibrary {
   template <class F>
   void for_each_run(const Axis& x, const Axis& y, Rectangle box, F&& f) const;
 
-  // Light in the square of 3 x 3 pixels about (x, y), weighted.
-  [[nodiscard]] double exact_flux(const FluxSpline& spline, PixelPosition star, int x, int y) const;
+  // Exact fractions of stars `shifts` from the centre of their pixel, shape (shift y, shift x, row, column).
+  [[nodiscard]] std::vector<double> exact_images(const FluxSpline& spline, std::span<const double> shifts) const;
 
   int phases_;
   PixelResponse response_;

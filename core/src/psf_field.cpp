@@ -110,27 +110,14 @@ class FieldPsf final : public PixelPsf {
 
 }  // namespace
 
-std::shared_ptr<const PixelPsf> make_field_psf(std::span<const FieldPsfTable> tables, Pixels diffusion, double accuracy,
-                                               int phases) {
-  std::vector<Problem> problems;
-  const auto refuse = [&problems](const std::string& value, const char* expected, const char* message) {
-    problems.push_back({.parameter = "PSF/File", .value = value, .expected = expected, .message = message});
-  };
-  if (tables.empty()) refuse("no table", "at least one table with its place in the field", "the PSF cannot be made");
-  for (std::size_t i = 0; i < tables.size(); ++i) {
-    const PixelPosition& p = tables[i].position;
-    const std::string place = fmt::format("({}, {})", p.x, p.y);
-    if (!std::isfinite(p.x) || !std::isfinite(p.y)) refuse(place, "two pixel coordinates", "a table has no place");
-    for (std::size_t j = 0; j < i; ++j)
-      if (tables[j].position.x == p.x && tables[j].position.y == p.y)
-        refuse(place, "one table a place", "two tables have the same place");
-  }
-  if (!problems.empty()) throw InputError(std::move(problems));
+std::shared_ptr<const PixelPsf> make_field_psf(std::span<const FieldPsfTable> tables, Pixels diffusion,
+                                               const PsfAccuracy& accuracy, int phases, const PixelResponse& response) {
+  detail::require_field(tables);
   std::vector<PixelPosition> nodes;
   std::vector<std::shared_ptr<const PixelPsf>> members;
   for (const FieldPsfTable& table : tables) {
     nodes.push_back(table.position);
-    members.push_back(make_prf_psf(diffuse_psf_table(table.table, diffusion), accuracy, phases));
+    members.push_back(make_prf_psf(diffuse_psf_table(table.table, diffusion), accuracy, phases, response));
   }
   return std::make_shared<const FieldPsf>(std::move(nodes), std::move(members));
 }

@@ -17,10 +17,14 @@ namespace {
 constexpr int kFewestPhases = 4;                        // where the search begins
 constexpr double kMostBytes = 256.0 * 1024.0 * 1024.0;  // of a library; a stamp of 45 px has 128 phases then
 
-int refine(const detail::FluxSpline& spline, double accuracy, const PixelResponse& response) {
+double error_of(const detail::PhaseLibrary& library, const detail::FluxSpline& spline, double least) {
+  return library.measured_error(spline, {.least = least, .outer = library.interior(), .hole = {}});
+}
+
+int refine(const detail::FluxSpline& spline, const PsfAccuracy& accuracy, const PixelResponse& response) {
   int phases = kFewestPhases;
   while (detail::PhaseLibrary::bytes(spline, 2 * phases) <= kMostBytes &&
-         detail::PhaseLibrary(spline, phases, response).measured_error(spline) > accuracy) {
+         error_of(detail::PhaseLibrary(spline, phases, response), spline, accuracy.least_light) > accuracy.relative) {
     phases *= 2;
   }
   return phases;
@@ -28,10 +32,10 @@ int refine(const detail::FluxSpline& spline, double accuracy, const PixelRespons
 
 class PrfPsf final : public PixelPsf {
  public:
-  PrfPsf(detail::FluxSpline spline, int phases, const PixelResponse& response)
+  PrfPsf(detail::FluxSpline spline, double least, int phases, const PixelResponse& response)
       : spline_(std::move(spline)),
         library_(spline_, phases, response),
-        error_(library_.measured_error(spline_)),
+        error_(error_of(library_, spline_, least)),
         depth_(response.depth()) {}
 
   void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const override {
@@ -105,7 +109,7 @@ class PrfPsf final : public PixelPsf {
 
 }  // namespace
 
-std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases,
+std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, const PsfAccuracy& accuracy, int phases,
                                              const PixelResponse& response) {
   detail::FluxSpline spline(table);
   if (phases == 0) phases = refine(spline, accuracy, response);
@@ -115,7 +119,7 @@ std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accur
                              .expected = "0, or a number whose library fits into 256 MiB",
                              .message = "a PSF library of so many phases cannot be made"});
   }
-  return std::make_shared<const PrfPsf>(std::move(spline), phases, response);
+  return std::make_shared<const PrfPsf>(std::move(spline), accuracy.least_light, phases, response);
 }
 
 }  // namespace astroid

@@ -9,12 +9,10 @@
 
 #include "astroid/core/math.hpp"
 #include "astroid/core/psf.hpp"
-#include "bessel.hpp"
 #include "circular_profile.hpp"
 #include "flux_spline.hpp"
 #include "motion_nodes.hpp"
 #include "phase_library.hpp"
-#include "psf_diffusion.hpp"
 
 namespace astroid {
 
@@ -23,22 +21,9 @@ namespace {
 constexpr int kCore = 8;                  // px; farther out the light is so thin that a coarser library does
 constexpr int kFewestPhases = 4;          // where the search begins
 constexpr int kMostCorePhases = 128;      // 47 MB
-constexpr int kMostWingPhases = 32;       // 300 MB at a reach of 90 px
-constexpr double kDiffusionMargin = 6.5;  // sigmas of diffusion that a table is made wider by, before it is cut
+constexpr int kMostWingPhases = 64;       // of a library of at most
+constexpr double kMostWingBytes = 300e6;  // which leaves 32 phases at a reach of 90 px, and 64 at 43 px
 constexpr std::size_t kMostCorePixels = 4UL * kCore * kCore;
-
-/// The middle (2 half_width)² px of a table.
-PsfTable cropped(const PsfTable& table, int half_width) {
-  const int half = static_cast<int>(table.samples_per_pixel) * half_width;
-  const int margin = table.samples.nx() / 2 - half;
-  PsfTable part;
-  part.samples = Image<double, unit::Relative>(2 * half, 2 * half);
-  part.samples_per_pixel = table.samples_per_pixel;
-  part.centre_x = part.centre_y = half - 0.5;
-  for (int y = 0; y < 2 * half; ++y)
-    for (int x = 0; x < 2 * half; ++x) part.samples.at(x, y) = table.samples.at(x + margin, y + margin);
-  return part;
-}
 
 /// A library of a profile out to a square, in fractions of all the star's light.
 struct ScaledLibrary {
@@ -46,16 +31,18 @@ struct ScaledLibrary {
   detail::FluxSpline spline;
   detail::PhaseLibrary library;
 
-  /// The edges of pixels of all phases, and of stars midway between them, are edges of the table's samples: there the
-  /// spline is exact.
-  static ScaledLibrary make(const detail::CircularProfile& profile, double diffusion, int half_width, int phases) {
-    const int margin = static_cast<int>(std::ceil(kDiffusionMargin * diffusion));
-    PsfTable table = detail::flux_table(profile, 2 * phases, half_width + margin);
-    if (diffusion > 0.0) table = cropped(detail::diffuse(table, diffusion, 1), half_width);
+  /// The edges of pixels of all phases are edges of the table's samples: there the spline is exact. With two samples to
+  /// a phase it is so for stars midway between them, which errors are judged by.
+  /// @param samples  per px at least: what the edges of cells within the pixel, which lie anywhere, ask for
+  static ScaledLibrary make(const detail::CircularProfile& profile, int half_width, int phases, int per_phase,
+                            const PixelResponse& response, int samples = 0) {
+    const int least = per_phase * phases;
+    const int parts = std::max(1, (samples + least - 1) / least);
+    const PsfTable table = detail::flux_table(profile, least * parts, half_width);
     double sum = 0.0;
     for (const double sample : table.samples.pixels()) sum += sample;
     detail::FluxSpline spline(table);
-    detail::PhaseLibrary library(spline, phases);
+    detail::PhaseLibrary library(spline, phases, response);
     return {sum, std::move(spline), std::move(library)};
   }
 };
@@ -63,10 +50,14 @@ struct ScaledLibrary {
 /// A core of many phases, and wings of fewer out to `reach`.
 class ProfilePsf final : public PixelPsf {
  public:
-  ProfilePsf(const detail::CircularProfile& profile, double diffusion, int reach, double accuracy, int phases)
-      : name_(profile.name), reach_(reach), core_(make_core(profile, diffusion, reach, accuracy, phases)) {
-    core_error_ = core_.library.measured_error(core_.spline);
-    if (reach_ > kCore) make_wings(profile, diffusion, accuracy);
+  ProfilePsf(const detail::CircularProfile& profile, const PsfWings& wings, const PsfAccuracy& accuracy, int phases,
+             const PixelResponse& response)
+      : name_(profile.name),
+        reach_(wings.reach),
+        depth_(response.depth()),
+        core_(make_core(profile, wings, accuracy, phases, response)) {
+    core_error_ = core_error(core_, reach_, accuracy.least_light);
+    if (reach_ > kCore) make_wings(profile, accuracy, response);
   }
 
   void integrate(PixelPosition centre, Rectangle box, std::span<double> fractions) const override {
@@ -129,57 +120,61 @@ class ProfilePsf final : public PixelPsf {
     return r;
   }
 
-  [[nodiscard]] double approximation_error() const override { return core_error_ + wing_error_; }
+  [[nodiscard]] double approximation_error() const override { return std::max(core_error_, wing_error_); }
 
   [[nodiscard]] std::string description() const override {
     const double beyond = 1.0 - (wings_ ? *wings_ : core_).enclosed;
     return fmt::format(
-        "{}, {:.2g} of the light beyond {} px left out; library of {} x {} phases, aperture flux within {:.2g}", name_,
-        beyond, reach_, core_.library.phases(), core_.library.phases(), approximation_error());
+        "{}, {:.2g} of the light beyond {} px left out{}; library of {} x {} phases, aperture flux within {:.2g}",
+        name_, beyond, reach_, depth_ > 0.0 ? ", weighted with the response within the pixel" : "",
+        core_.library.phases(), core_.library.phases(), approximation_error());
   }
 
  private:
-  static ScaledLibrary make_core(const detail::CircularProfile& profile, double diffusion, int reach, double accuracy,
-                                 int phases) {
-    const int half_width = std::min(reach, kCore);
-    if (phases > 0) return ScaledLibrary::make(profile, diffusion, half_width, std::min(phases, kMostCorePhases));
+  /// Of the pixels that are taken from the core.
+  static double core_error(const ScaledLibrary& core, int reach, double least) {
+    return core.library.measured_error(core.spline,
+                                       {.least = least / core.enclosed,
+                                        .outer = reach > kCore ? core_box({0.5, 0.5}) : core.library.interior(),
+                                        .hole = {}});
+  }
+
+  static ScaledLibrary make_core(const detail::CircularProfile& profile, const PsfWings& wings,
+                                 const PsfAccuracy& accuracy, int phases, const PixelResponse& response) {
+    const int half_width = std::min(wings.reach, kCore);
+    // The spline leaves 4e-3 / (samples per sigma)⁴ of the light between the edges of samples, of which the response
+    // sees its own depth; sigma is 0.85 of the scale.
+    constexpr double kSplineError = 4e-3;
+    constexpr double kSplineShare = 0.1;
+    constexpr double kSigma = 0.85;
+    const double width = kSigma * profile.scale;
+    const double per_sigma = det::sqrt(det::sqrt(kSplineError * response.depth() / (kSplineShare * accuracy.relative)));
+    const int samples = static_cast<int>(std::ceil(per_sigma / width));
+    const auto make = [&](int n) { return ScaledLibrary::make(profile, half_width, n, 2, response, samples); };
+    if (phases > 0) return make(std::min(phases, kMostCorePhases));
     int n = kFewestPhases;
-    ScaledLibrary core = ScaledLibrary::make(profile, diffusion, half_width, n);
-    while (2 * n <= kMostCorePhases && core.library.measured_error(core.spline) > accuracy) {
+    ScaledLibrary core = make(n);
+    while (2 * n <= kMostCorePhases && core_error(core, wings.reach, accuracy.least_light) > accuracy.relative) {
       n *= 2;
-      core = ScaledLibrary::make(profile, diffusion, half_width, n);
+      core = make(n);
     }
     return core;
   }
 
-  void make_wings(const detail::CircularProfile& profile, double diffusion, double accuracy) {
+  void make_wings(const detail::CircularProfile& profile, const PsfAccuracy& accuracy, const PixelResponse& response) {
+    const double pixels = 4.0 * reach_ * reach_;
     for (int n = kFewestPhases;; n *= 2) {
-      wings_.emplace(ScaledLibrary::make(profile, diffusion, reach_, n));
-      wing_error_ = measured_wing_error();
-      if (wing_error_ <= accuracy || 2 * n > kMostWingPhases) return;
+      // Between the edges of samples the spline errs by a ninth of what four points between phases do, the same way.
+      constexpr double kSplinePart = 9.0 / 8.0;
+      wings_.emplace(ScaledLibrary::make(profile, reach_, n, 1, response));
+      // Of a star midway between any phases the core has at least these pixels.
+      wing_error_ = kSplinePart *
+                    wings_->library.measured_error(wings_->spline, {.least = accuracy.least_light / wings_->enclosed,
+                                                                    .outer = wings_->library.interior(),
+                                                                    .hole = core_box({0.5, 0.5})});
+      const double next = sizeof(double) * pixels * 4.0 * n * n;
+      if (wing_error_ <= accuracy.relative || 2 * n > kMostWingPhases || next > kMostWingBytes) return;
     }
-  }
-
-  /// Largest error of the light in 3 x 3 px next to the core, of stars midway between phases, as a fraction of all the
-  /// star's light.
-  [[nodiscard]] double measured_wing_error() const {
-    constexpr int kSide = 3;
-    std::array<double, static_cast<std::size_t>(kSide * kSide)> fractions{};
-    const double midway = 0.5 / wings_->library.phases();
-    double worst = 0.0;
-    for (int p = 0; p < wings_->library.phases(); ++p) {
-      const PixelPosition star{midway * (2 * p + 1), midway};
-      for (const auto& [x, y] :
-           {std::pair{kCore, -1}, std::pair{kCore, kCore}, std::pair{-1, kCore}, std::pair{kCore, 3}}) {
-        wings_->library.integrate(star, {x, y, kSide, kSide}, fractions);
-        double flux = 0.0;
-        for (const double fraction : fractions) flux += fraction;
-        const double exact = wings_->spline.flux({x - 0.5 - star.x, y - 0.5 - star.y},
-                                                 {x + kSide - 0.5 - star.x, y + kSide - 0.5 - star.y});
-        worst = std::max(worst, wings_->enclosed * std::abs(flux - exact));
-      }
-    }
-    return worst;
   }
 
   /// The pixels that the core's library has wholly, at every phase that the interpolation uses.
@@ -234,66 +229,27 @@ class ProfilePsf final : public PixelPsf {
 
   std::string name_;
   int reach_;
+  double depth_;  // of the response
   ScaledLibrary core_;
   std::optional<ScaledLibrary> wings_;
   double core_error_ = 0.0;
   double wing_error_ = 0.0;
 };
 
-void require(bool holds, const char* parameter, double value, const char* expected, std::vector<Problem>& problems) {
-  if (holds && std::isfinite(value)) return;
-  problems.push_back({.parameter = parameter,
-                      .value = fmt::format("{}", value),
-                      .expected = expected,
-                      .message = "the PSF cannot be made"});
-}
-
-void require_wings(const PsfWings& wings, std::vector<Problem>& problems) {
-  require(wings.reach >= 2 && wings.reach <= PsfWings::kLongestReach, "PSF/Reach", wings.reach, "2 .. 90 px", problems);
-  require(wings.diffusion >= 0.0 && wings.diffusion <= 3.0, "PSF/ChargeDiffusion", wings.diffusion, "0 .. 3 px",
-          problems);
-  if (!problems.empty()) throw InputError(std::move(problems));
-}
-
 }  // namespace
 
-std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings, double accuracy,
-                                                int phases) {
-  std::vector<Problem> problems;
-  require(fwhm >= 0.2 && fwhm <= 20.0, "PSF/FWHM", fwhm, "0.2 .. 20 px", problems);
-  require(beta > 1.0 && beta <= 100.0, "PSF/Beta", beta, "more than 1, at most 100", problems);
-  require_wings(wings, problems);
-  const double alpha = 0.5 * fwhm / det::sqrt(det::expm1(det::log(2.0) / beta));
-  const double peak = (beta - 1.0) / (kPi * alpha * alpha);
-  const double per_alpha2 = 1.0 / (alpha * alpha);
-  const detail::CircularProfile profile{
-      .density = [=](double r2) { return peak * det::exp(-beta * det::log1p(r2 * per_alpha2)); },
-      .scale = 0.5 * fwhm,
-      .name = fmt::format("Moffat of FWHM {} px, beta {}", fwhm, beta)};
-  return std::make_shared<const ProfilePsf>(profile, wings.diffusion, wings.reach, accuracy, phases);
+std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings,
+                                                const PsfAccuracy& accuracy, int phases,
+                                                const PixelResponse& response) {
+  return std::make_shared<const ProfilePsf>(detail::as_imaged(detail::moffat_profile(fwhm, beta, wings), wings), wings,
+                                            accuracy, phases, response);
 }
 
 std::shared_ptr<const PixelPsf> make_airy_psf(double lambda_over_d, double obscuration, const PsfWings& wings,
-                                              double accuracy, int phases) {
-  std::vector<Problem> problems;
-  require(lambda_over_d >= 0.3 && lambda_over_d <= 20.0, "PSF/LambdaOverD", lambda_over_d, "0.3 .. 20 px", problems);
-  require(obscuration >= 0.0 && obscuration < 1.0, "PSF/Obscuration", obscuration, "0 to less than 1", problems);
-  require_wings(wings, problems);
-  const double e2 = obscuration * obscuration;
-  // The peak is the area of the aperture in units of (lambda / px)²; the amplitude that of a disc less its centre.
-  const double peak = 0.25 * kPi * (1.0 - e2) / (lambda_over_d * lambda_over_d);
-  const double per_px = kPi / lambda_over_d;
-  const detail::CircularProfile profile{
-      .density =
-          [=](double r2) {
-            const double v = per_px * det::sqrt(r2);
-            const double full = detail::jinc(v);
-            const double amplitude = e2 > 0.0 ? (full - e2 * detail::jinc(obscuration * v)) / (1.0 - e2) : full;
-            return peak * amplitude * amplitude;
-          },
-      .scale = 0.5 * lambda_over_d,
-      .name = fmt::format("Airy pattern of lambda/D {} px, obscuration {}", lambda_over_d, obscuration)};
-  return std::make_shared<const ProfilePsf>(profile, wings.diffusion, wings.reach, accuracy, phases);
+                                              const PsfAccuracy& accuracy, int phases, const PixelResponse& response) {
+  return std::make_shared<const ProfilePsf>(
+      detail::as_imaged(detail::airy_profile(lambda_over_d, obscuration, wings), wings), wings, accuracy, phases,
+      response);
 }
 
 }  // namespace astroid

@@ -59,15 +59,20 @@ double disc_rectangle_overlap(double radius, double x0, double x1, double y0, do
   const double far_x = std::max(std::abs(x0), std::abs(x1));
   const double far_y = std::max(std::abs(y0), std::abs(y1));
   const double area = (x1 - x0) * (y1 - y0);
+  const double near_x = std::max({0.0, x0, -x1});
+  const double near_y = std::max({0.0, y0, -y1});
+  if (near_x * near_x + near_y * near_y >= radius * radius) return 0.0;
   if (far_x * far_x + far_y * far_y <= radius * radius) return area;
-  // Fold the rectangle along the axes into the first quadrant.
+  // Fold the rectangle along the axes into the first quadrant; most lie in one quadrant already.
   double overlap = 0.0;
   for (const double sign_x : {-1.0, 1.0}) {
+    const double right = sign_x > 0.0 ? x1 : -x0;
+    if (right <= 0.0) continue;
     const double left = std::max(0.0, sign_x > 0.0 ? x0 : -x1);
-    const double right = std::max(0.0, sign_x > 0.0 ? x1 : -x0);
     for (const double sign_y : {-1.0, 1.0}) {
+      const double top = sign_y > 0.0 ? y1 : -y0;
+      if (top <= 0.0) continue;
       const double bottom = std::max(0.0, sign_y > 0.0 ? y0 : -y1);
-      const double top = std::max(0.0, sign_y > 0.0 ? y1 : -y0);
       overlap += quadrant_overlap(radius, left, right, bottom, top);
     }
   }

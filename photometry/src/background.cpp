@@ -8,7 +8,10 @@
 #include <utility>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/math.hpp"
 #include "astroid/photometry/aperture.hpp"
+#include "mesh/cell_histogram.hpp"
+#include "mesh/light_under_sky.hpp"
 #include "natural_spline.hpp"
 
 namespace astroid {
@@ -42,6 +45,8 @@ int cell_edge(std::size_t i, std::size_t n, int pixels) {
   return static_cast<int>(i * static_cast<std::size_t>(pixels) / n);
 }
 
+constexpr std::size_t kBlock = 4;  // cells along a side of a block whose pixels tell how much light of stars is in it
+
 bool usable(float counts, std::uint8_t flags) {
   return (flags & ~pixel_flag::kTruth) == 0 && std::isfinite(counts);
 }
@@ -54,6 +59,14 @@ double median_of(std::vector<double> values) {
 
 }  // namespace
 
+// What the cells of a mesh say before it is smoothed.
+struct BackgroundMap::Cells {
+  std::vector<double> level, mode, rms;     // shape (rows, columns), ADU; NaN without enough pixels
+  std::vector<std::vector<double>> blocks;  // counts about the level of each cell in units of its rms
+  std::size_t block_columns = 0;
+  std::size_t block_rows = 0;
+};
+
 BackgroundMap::BackgroundMap(const Frame& frame, std::size_t region, const MeshSettings& settings)
     : area_(frame.pixels.layout().regions()[region]) {
   check(settings);
@@ -61,37 +74,140 @@ BackgroundMap::BackgroundMap(const Frame& frame, std::size_t region, const MeshS
   rows_ = cells_along(area_.ny, settings.cell);
   const auto pixels = frame.pixels.view(region);
   const auto flags = frame.flags.view(region);
-  std::vector<double> level(columns_ * rows_, kNaN);
-  std::vector<double> rms(columns_ * rows_, kNaN);
-  std::vector<double> values;
+  const bool fit_light = settings.estimator == SkyEstimator::kLightFit;
+  Cells cells;
+  cells.level.assign(columns_ * rows_, kNaN);
+  cells.mode = cells.level;
+  cells.rms = cells.level;
+  cells.block_columns = (columns_ + kBlock - 1) / kBlock;
+  cells.block_rows = (rows_ + kBlock - 1) / kBlock;
+  cells.blocks.assign(cells.block_columns * cells.block_rows, std::vector<double>(detail::LightUnderSky::kBins, 0.0));
+  std::vector<float> values;
+  std::vector<double> to_sort;
+  detail::CellHistogram histogram;
+  double quantum = kNaN;
   for (std::size_t j = 0; j < rows_; ++j) {
     for (std::size_t i = 0; i < columns_; ++i) {
       const int x0 = cell_edge(i, columns_, area_.nx);
       const int x1 = cell_edge(i + 1, columns_, area_.nx);
       const int y0 = cell_edge(j, rows_, area_.ny);
       const int y1 = cell_edge(j + 1, rows_, area_.ny);
-      values.clear();
+      const auto all = static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0);
+      values.resize(all);
+      std::size_t count = 0;
       for (int y = y0; y < y1; ++y) {
         const auto row = pixels.row(area_.y0 + y);
         const auto row_flags = flags.row(area_.y0 + y);
-        for (auto x = static_cast<std::size_t>(x0); x < static_cast<std::size_t>(x1); ++x)
-          if (usable(row[x], row_flags[x])) values.push_back(static_cast<double>(row[x]));
+        for (auto x = static_cast<std::size_t>(x0); x < static_cast<std::size_t>(x1); ++x) {
+          values[count] = row[x];
+          count += usable(row[x], row_flags[x]) ? 1 : 0;
+        }
       }
-      const auto all = static_cast<std::size_t>(x1 - x0) * static_cast<std::size_t>(y1 - y0);
+      values.resize(count);
       if (values.empty() || 2 * values.size() < all) continue;
-      const SkyEstimate sky = clipped_sky(values, settings.clip, true);
-      level[j * columns_ + i] = sky.level;
-      rms[j * columns_ + i] = sky.rms;
+      if (std::isnan(quantum)) quantum = detail::quantum_of(values);
+      const bool mode = settings.estimator == SkyEstimator::kMode;
+      SkyEstimate sky;
+      std::vector<double>& block = cells.blocks[j / kBlock * cells.block_columns + i / kBlock];
+      using Light = detail::LightUnderSky;
+      if (histogram.fill(values, quantum) && histogram.clipped(settings.clip, mode, sky)) {
+        if (fit_light) histogram.add_scaled(sky.level, sky.rms, Light::kReach, Light::kStep, block);
+      } else {
+        to_sort.assign(values.begin(), values.end());
+        sky = clipped_sky(to_sort, settings.clip, mode);
+        if (fit_light) detail::add_scaled(to_sort, sky.level, sky.rms, Light::kReach, Light::kStep, block);
+      }
+      cells.level[j * columns_ + i] = sky.level;
+      cells.mode[j * columns_ + i] = sky.mode;
+      cells.rms[j * columns_ + i] = sky.rms;
     }
   }
-  for (std::vector<double>* cells : {&level, &rms}) {
-    fill_empty_cells(*cells);
-    filter_cells(*cells, settings.filter);
+  for (std::vector<double>* cell : {&cells.level, &cells.mode, &cells.rms}) {
+    fill_empty_cells(*cell);
+    filter_cells(*cell, settings.filter);
   }
-  median_level_ = median_of(level);
-  median_rms_ = median_of(rms);
-  level_ = make_grid(std::move(level));
-  rms_ = make_grid(std::move(rms));
+  // Of a median of n pixels, and of the median of filter² cells.
+  const double width = static_cast<double>(area_.nx) / static_cast<double>(columns_);
+  const double height = static_cast<double>(area_.ny) / static_cast<double>(rows_);
+  const double filtered = settings.filter > 1 ? 0.5 * kPi / (settings.filter * settings.filter) : 1.0;
+  // 2.5 median - 1.5 mean of normal values: 2.5² π/2 + 1.5² - 2·2.5·1.5.
+  constexpr double kMode = 2.5 * 2.5 * 0.5 * kPi + 1.5 * 1.5 - 2.0 * 2.5 * 1.5;
+  const double estimator = settings.estimator == SkyEstimator::kMode ? kMode : 0.5 * kPi;
+  relative_error_ = std::sqrt(estimator * filtered / (width * height));
+  lit_share_ = kNaN;
+  // Where pixels are not distributed as the fit expects, the mode is the better guess.
+  if (fit_light && !take_out_light(frame, cells)) {
+    cells.level = cells.mode;
+    relative_error_ = std::sqrt(kMode * filtered / (width * height));
+  }
+  median_level_ = median_of(cells.level);
+  median_rms_ = median_of(cells.rms);
+  level_ = make_grid(std::move(cells.level));
+  rms_ = make_grid(std::move(cells.rms));
+}
+
+// Lowers the level of every cell by what a fit to the pixels of a block of cells finds of stars in it.
+// @returns false without having done so.
+bool BackgroundMap::take_out_light(const Frame& frame, Cells& cells) {
+  const double rms = median_of(cells.rms);
+  const double noise = frame.header.gain.value() * rms;  // e-
+  const double readout = frame.header.readout_noise.value();
+  if (!(rms > 0.0)) return false;
+  // Where a pixel scatters by less than an electron, counts are not what the gain says they are.
+  constexpr double kLeastNoise = 1.0;
+  constexpr double kMostSkewness = 0.3;
+  const bool photons = noise > kLeastNoise;
+  const double skewness =
+      photons ? std::min(kMostSkewness, std::max(0.0, noise * noise - readout * readout) / (noise * noise * noise))
+              : 0.0;
+  const detail::LightUnderSky model(skewness, photons ? 1.0 / noise : 0.0);
+  constexpr double kFewest = 8192.0;  // pixels; with fewer the noise of the fit is larger than the light of a crowd
+  std::vector<double> all(detail::LightUnderSky::kBins, 0.0);
+  double total = 0.0;
+  for (const auto& block : cells.blocks)
+    for (std::size_t k = 0; k < block.size(); ++k) {
+      all[k] += block[k];
+      total += block[k];
+    }
+  if (total < kFewest) return false;
+  const auto whole = model.fit(all);
+  if (!whole.converged) return false;
+  lit_share_ = whole.lit;
+  std::vector<double> shift(cells.blocks.size(), whole.level);
+  double error = whole.error;
+  for (std::size_t b = 0; b < cells.blocks.size() && cells.blocks.size() > 1; ++b) {
+    double count = 0.0;
+    for (const double n : cells.blocks[b]) count += n;
+    if (count < kFewest) continue;
+    const auto fit = model.fit(cells.blocks[b]);
+    if (!fit.converged) continue;
+    shift[b] = fit.level;
+    error = std::max(error, fit.error);
+  }
+  relative_error_ = std::sqrt(relative_error_ * relative_error_ + error * error);
+  // Linear between the centres of blocks.
+  const auto at = [](std::size_t cell, std::size_t blocks, std::size_t& first, std::size_t& second) {
+    const double t = std::clamp((static_cast<double>(cell) + 0.5) / static_cast<double>(kBlock) - 0.5, 0.0,
+                                static_cast<double>(blocks - 1));
+    first = static_cast<std::size_t>(t);
+    second = std::min(first + 1, blocks - 1);
+    return t - static_cast<double>(first);
+  };
+  for (std::size_t j = 0; j < rows_; ++j) {
+    for (std::size_t i = 0; i < columns_; ++i) {
+      std::size_t x0 = 0;
+      std::size_t x1 = 0;
+      std::size_t y0 = 0;
+      std::size_t y1 = 0;
+      const double u = at(i, cells.block_columns, x0, x1);
+      const double v = at(j, cells.block_rows, y0, y1);
+      const double* low = shift.data() + y0 * cells.block_columns;
+      const double* high = shift.data() + y1 * cells.block_columns;
+      const double value = (1.0 - v) * ((1.0 - u) * low[x0] + u * low[x1]) + v * ((1.0 - u) * high[x0] + u * high[x1]);
+      cells.level[j * columns_ + i] += value * cells.rms[j * columns_ + i];
+    }
+  }
+  return true;
 }
 
 void BackgroundMap::fill_empty_cells(std::vector<double>& value) const {
@@ -162,8 +278,33 @@ void BackgroundMap::grid_row(const Grid& grid, int y, std::span<double> out) con
   std::vector<double> curvature(columns_);
   std::vector<double> scratch;
   detail::natural_spline(knots, 1, curvature, scratch);
-  for (std::size_t x = 0; x < out.size(); ++x)
-    out[x] = detail::spline_value(knots, curvature, 1, (static_cast<double>(x) + 0.5) / cell_width - 0.5);
+  if (columns_ == 1) {
+    std::fill(out.begin(), out.end(), knots[0]);
+    return;
+  }
+  // Cell by cell, so that the polynomial of each is looked up once.
+  std::size_t x = 0;
+  for (std::size_t i = 0; i + 1 < columns_; ++i) {
+    const bool last = i + 2 == columns_;
+    const double middle = (static_cast<double>(i) + 1.5) * cell_width - 0.5;
+    const std::size_t end =
+        last ? out.size() : std::min(out.size(), static_cast<std::size_t>(std::max(0.0, std::ceil(middle))));
+    const double left = knots[i];
+    const double right = knots[i + 1];
+    const double bend_left = curvature[i] / 6.0;
+    const double bend_right = curvature[i + 1] / 6.0;
+    const double scale = 1.0 / cell_width;
+    const double offset = 0.5 * scale - 0.5 - static_cast<double>(i);
+    const auto first = static_cast<int>(x);
+    const auto count = static_cast<int>(end) - first;
+    double* row = out.data() + x;
+    for (int k = 0; k < count; ++k) {
+      const double b = static_cast<double>(first + k) * scale + offset;
+      const double a = 1.0 - b;
+      row[k] = a * left + b * right + ((a * a * a - a) * bend_left + (b * b * b - b) * bend_right);
+    }
+    x = std::max(x, end);
+  }
 }
 
 void BackgroundMap::level_row(int y, std::span<double> level) const {
@@ -188,8 +329,7 @@ void subtract_background(Frame& frame, std::size_t region, const BackgroundMap& 
 }
 
 AnnulusBackground annulus_background(const Frame& frame, std::size_t region, PixelPosition centre, double inner,
-                                     double outer) {
-  constexpr double kClip = 3.0;
+                                     double outer, double clip) {
   AnnulusBackground result;
   result.level = kNaN;
   result.error = kNaN;
@@ -207,7 +347,7 @@ AnnulusBackground annulus_background(const Frame& frame, std::size_t region, Pix
       values.push_back(static_cast<double>(pixels.at(x, y)));
     }
   }
-  const SkyEstimate sky = clipped_sky(values, kClip, false);
+  const SkyEstimate sky = clipped_sky(values, clip, false);
   result.pixels = sky.pixels;
   if (sky.pixels < kFewestAnnulusPixels) return result;
   result.level = sky.level;

@@ -4,13 +4,12 @@
 
 #include "astroid/core/math.hpp"
 #include "astroid/photometry/background.hpp"
+#include "mesh/clipping.hpp"
 
 namespace astroid {
 
 namespace {
 
-// Clipping that has not settled by then only oscillates by a value or two.
-constexpr int kMostClippings = 100;
 // SExtractor trusts mean and median to tell the mode while they differ by less than this many sigma.
 constexpr double kModeLimit = 0.3;
 constexpr double kModeMedian = 2.5;
@@ -31,10 +30,12 @@ Moments moments(std::span<const double> values) {
   return {mean, values.size() > 1 ? std::sqrt(squares / (n - 1.0)) : 0.0};
 }
 
-// What clipping at `clip` sigma of what is left leaves of the scatter of normal values: the s of s = f(clip s), with
-// f(t)² = 1 - 2 t φ(t) / (2 Φ(t) - 1) the variance of a normal distribution cut at ± t. Below √3 sigma clipping would
-// never end, so the last value before is taken.
-double clipped_share(double clip) {
+}  // namespace
+
+// The s of s = f(clip s), with f(t)² = 1 - 2 t φ(t) / (2 Φ(t) - 1) the variance of a normal distribution cut at ± t.
+// Below √3 sigma clipping would never end, so the last value before is taken.
+double detail::clipped_share(double clip) {
+  if (!std::isfinite(clip)) return 1.0;
   constexpr double kLeastClip = 1.8;
   constexpr int kIterations = 60;
   const double k = std::max(clip, kLeastClip);
@@ -47,7 +48,9 @@ double clipped_share(double clip) {
   return share;
 }
 
-}  // namespace
+double detail::mode_from(double median, double mean, double rms) {
+  return std::abs(mean - median) < kModeLimit * rms ? kModeMedian * median - kModeMean * mean : median;
+}
 
 double smoothed_median(std::span<const double> sorted) {
   const std::size_t n = sorted.size();
@@ -69,9 +72,10 @@ SkyEstimate clipped_sky(std::vector<double>& values, double clip, bool mode) {
   std::span<const double> kept(values);
   SkyEstimate sky;
   sky.level = smoothed_median(kept);
+  sky.mode = sky.level;
   if (kept.empty()) return sky;
   Moments m = moments(kept);
-  for (int i = 0; i < kMostClippings && m.rms > 0.0; ++i) {
+  for (int i = 0; i < detail::kMostClippings && m.rms > 0.0; ++i) {
     // Against all values, not only the ones kept so far: one that was clipped too early comes back.
     const auto first = std::lower_bound(values.begin(), values.end(), sky.level - clip * m.rms);
     const auto last = std::upper_bound(values.begin(), values.end(), sky.level + clip * m.rms);
@@ -82,10 +86,10 @@ SkyEstimate clipped_sky(std::vector<double>& values, double clip, bool mode) {
     sky.level = smoothed_median(kept);
     m = moments(kept);
   }
-  sky.rms = m.rms / clipped_share(clip);
+  sky.rms = m.rms / detail::clipped_share(clip);
   sky.pixels = kept.size();
-  if (mode && std::abs(m.mean - sky.level) < kModeLimit * m.rms)
-    sky.level = kModeMedian * sky.level - kModeMean * m.mean;
+  sky.mode = detail::mode_from(sky.level, m.mean, m.rms);
+  if (mode) sky.level = sky.mode;
   return sky;
 }
 

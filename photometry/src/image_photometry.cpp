@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "astroid/core/csv.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/photometric.hpp"
 #include "astroid/photometry/aperture.hpp"
@@ -59,6 +58,8 @@ void check_settings(const ImagePhotometrySettings& settings) {
   if (settings.background == BackgroundMethod::kLocal && !(inner >= 0.0 && outer > inner && std::isfinite(outer)))
     complain("annulus", fmt::format("{} to {}", inner, outer), "0 <= inner radius < outer radius, px",
              "the annulus of the local background has no area");
+  if (!(settings.annulus_clip > 0.0))
+    complain("annulus clip", fmt::format("{}", settings.annulus_clip), "more than 0 sigma", "no pixel would be left");
   if (!problems.empty()) throw InputError(std::move(problems));
 }
 
@@ -307,18 +308,15 @@ std::vector<SourceMeasurement> measure_image(const Frame& frame, const SkyProjec
     } else if (sky != nullptr && std::isfinite(centre.x) && std::isfinite(centre.y)) {
       direction = sky->to_sky(centre);
     }
-    m = {sources[i].id, centre.x, centre.y, direction.ra, direction.dec, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, kNaN, 0};
+    m.id = sources[i].id;
+    m.x = centre.x;
+    m.y = centre.y;
+    m.ra = direction.ra;
+    m.dec = direction.dec;
+    m.flux = m.flux_err = m.mag = m.mag_err = m.background = m.snr = m.chi2 = kNaN;
   }
   ImageMeasurer(frame, settings).measure_all(measured);
   return measured;
-}
-
-void write_sources(const std::filesystem::path& path, std::span<const SourceMeasurement> sources) {
-  CsvWriter csv(
-      path, {"id", "x", "y", "ra", "dec", "flux", "flux_err", "mag", "mag_err", "background", "snr", "chi2", "flags"});
-  for (const SourceMeasurement& s : sources)
-    csv.row(s.id, s.x, s.y, s.ra, s.dec, s.flux, s.flux_err, s.mag, s.mag_err, s.background, s.snr, s.chi2, s.flags);
-  csv.commit();
 }
 
 }  // namespace astroid

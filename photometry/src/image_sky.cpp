@@ -5,20 +5,25 @@
 
 namespace astroid::detail {
 
-ImageSky::ImageSky(const Frame& frame, const ImagePhotometrySettings& settings) : frame_(frame), settings_(settings) {
-  if (settings.background != BackgroundMethod::kMesh) return;
-  const Rectangle& area = frame.pixels.layout().regions()[0];
-  mesh_level_ = Image<double, unit::Adu>(area);
-  mesh_rms_ = Image<double, unit::Adu>(area);
-  for (int y = area.y0; y < area.y1(); ++y) {
-    mesh().level_row(y, mesh_level_.row(y));
-    mesh().rms_row(y, mesh_rms_.row(y));
-  }
-}
+ImageSky::ImageSky(const Frame& frame, const ImagePhotometrySettings& settings)
+    : frame_(frame), settings_(settings), mesh_(settings.map) {}
 
 const BackgroundMap& ImageSky::mesh() {
-  if (!mesh_) mesh_.emplace(frame_, 0, settings_.mesh);
+  if (!mesh_) mesh_ = std::make_shared<const BackgroundMap>(frame_, 0, settings_.mesh);
   return *mesh_;
+}
+
+const ImageSky::Row& ImageSky::row(int y) {
+  const Rectangle& area = mesh().area();
+  rows_.resize(static_cast<std::size_t>(area.ny));
+  Row& row = rows_[static_cast<std::size_t>(y - area.y0)];
+  if (row.level.empty()) {
+    row.level.resize(static_cast<std::size_t>(area.nx));
+    row.rms.resize(row.level.size());
+    mesh().level_row(y, row.level);
+    mesh().rms_row(y, row.rms);
+  }
+  return row;
 }
 
 SkyUnderStar ImageSky::from_rms(double level, double error, double rms) const {
@@ -26,14 +31,6 @@ SkyUnderStar ImageSky::from_rms(double level, double error, double rms) const {
   const double gain = frame_.header.gain.value();
   // A noise-free picture still was read out.
   return {level, error, std::max(gain * gain * rms * rms, readout * readout), false};
-}
-
-double ImageSky::mesh_error(double rms) const {
-  // Variance of 2.5 median - 1.5 mean of normal values: (2.5² π/2 + 1.5² - 2·2.5·1.5) σ²/n; a median of filter² cells
-  // lowers it by π/2 / filter².
-  constexpr double kMode = 2.5 * 2.5 * 0.5 * kPi + 1.5 * 1.5 - 2.0 * 2.5 * 1.5;
-  const double filter = settings_.mesh.filter > 1 ? 0.5 * kPi / (settings_.mesh.filter * settings_.mesh.filter) : 1.0;
-  return std::sqrt(kMode * filter) * rms / settings_.mesh.cell;
 }
 
 SkyUnderStar ImageSky::under(PixelPosition star) {
@@ -52,14 +49,16 @@ SkyUnderStar ImageSky::under(PixelPosition star) {
     case BackgroundMethod::kMesh: {
       const int x = std::clamp(static_cast<int>(std::floor(star.x + 0.5)), area.x0, area.x1() - 1);
       const int y = std::clamp(static_cast<int>(std::floor(star.y + 0.5)), area.y0, area.y1() - 1);
-      const double rms = mesh_rms_.at(x, y);
-      return from_rms(mesh_level_.at(x, y), mesh_error(rms), rms);
+      const Row& under = row(y);
+      const auto column = static_cast<std::size_t>(x - area.x0);
+      const double rms = under.rms[column];
+      return from_rms(under.level[column], mesh().level_error(rms), rms);
     }
     case BackgroundMethod::kLocal: {
-      const AnnulusBackground annulus =
-          annulus_background(frame_, 0, star, settings_.annulus_inner.value(), settings_.annulus_outer.value());
+      const AnnulusBackground annulus = annulus_background(frame_, 0, star, settings_.annulus_inner.value(),
+                                                           settings_.annulus_outer.value(), settings_.annulus_clip);
       if (std::isfinite(annulus.level)) return from_rms(annulus.level, annulus.error, annulus.rms);
-      SkyUnderStar sky = from_rms(mesh().median_level(), mesh_error(mesh().median_rms()), mesh().median_rms());
+      SkyUnderStar sky = from_rms(mesh().median_level(), mesh().level_error(mesh().median_rms()), mesh().median_rms());
       sky.fallback = true;
       return sky;
     }

@@ -1,7 +1,8 @@
 // The background under a star of a single image, whichever way it is estimated.
 #pragma once
 
-#include <optional>
+#include <memory>
+#include <vector>
 
 #include "astroid/photometry/background.hpp"
 #include "astroid/photometry/image_photometry.hpp"
@@ -24,13 +25,16 @@ class ImageSky {
  private:
   [[nodiscard]] const BackgroundMap& mesh();
   [[nodiscard]] SkyUnderStar from_rms(double level, double error, double rms) const;
-  [[nodiscard]] double mesh_error(double rms) const;
 
   const Frame& frame_;
   const ImagePhotometrySettings& settings_;
-  std::optional<BackgroundMap> mesh_;
-  Image<double, unit::Adu> mesh_level_;  // filled when the mesh is the method
-  Image<double, unit::Adu> mesh_rms_;
+  struct Row {
+    std::vector<double> level, rms;
+  };
+  [[nodiscard]] const Row& row(int y);
+
+  std::shared_ptr<const BackgroundMap> mesh_;
+  std::vector<Row> rows_;  // of the mesh, made when a star is on them
 };
 
 }  // namespace astroid::detail

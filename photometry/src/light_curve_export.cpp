@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "astroid/core/fits.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "light_curve_cards.hpp"
 
@@ -26,7 +27,6 @@ void export_light_curve(const std::string& path, const LightCurve& curve, const 
   writer.card({"MAG", curve.star.magnitude, "[mag] of the catalogue"});
   writer.card({"EXPTIME", header.exposure_time, "[s] exposure time"});
   writer.card({"CYCLE", header.cycle, "[s] from exposure to exposure"});
-  constexpr double kSecondsPerDay = 86400.0;
   const double later = header.line_time * curve.star.y / kSecondsPerDay;  // of its row
   std::vector<double> time;
   std::vector<double> error;

@@ -58,6 +58,7 @@ LightCurveHeader read_header(const FitsReader& reader) {
   header.exposure_time = number_of(reader, "EXPTIME");
   header.start_mjd = number_of(reader, "MJD-BEG");
   header.is_corrected = reader.find_unit("ATTITUDE1").has_value();
+  header.has_responses = reader.find_column(unit_named(reader, "STARS"), "RYAW").has_value();
   header.line_time = reader.number(kPrimary, "LINETIME").value_or(0.0);
   header.history = reader.history(kPrimary);
   const int groups = group_count(reader);

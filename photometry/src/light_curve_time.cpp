@@ -1,12 +1,12 @@
 #include <cstddef>
 
+#include "astroid/core/units.hpp"
 #include "astroid/photometry/light_curves.hpp"
 
 namespace astroid {
 
 namespace {
 
-constexpr double kSecondsPerDay = 86400.0;
 // TIME counts from BJD 2457000 as TESS does; MJD counts from JD 2400000.5.
 constexpr double kMjdOfTimeZero = 2457000.0 - 2400000.5;
 

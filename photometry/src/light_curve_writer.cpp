@@ -114,7 +114,7 @@ struct LightCurveWriter::Impl {
                                     {"REFERENCE", FitsNumber::kFloat64, "electron"},
                                     {"NSR", FitsNumber::kFloat64},
                                     {"FLAGS", FitsNumber::kInt32}};
-    if (header.is_corrected)
+    if (header.has_responses)
       for (const char* axis : {"RYAW", "RPITCH", "RROLL"}) columns.push_back({axis, FitsNumber::kFloat64, "arcsec-1"});
     writer.begin_table(columns, name, stars);
     if (s.empty()) return;
@@ -128,7 +128,7 @@ struct LightCurveWriter::Impl {
     writer.write_column(4, 0, column_of(s, &LightCurveStar::reference));
     writer.write_column(5, 0, column_of(s, &LightCurveStar::nsr_exposure));
     writer.write_column(6, 0, star_flags);
-    if (!header.is_corrected) return;
+    if (!header.has_responses) return;
     int column = 7;
     for (double AttitudeResponse::*axis : {&AttitudeResponse::yaw, &AttitudeResponse::pitch, &AttitudeResponse::roll}) {
       std::vector<double> values;

@@ -64,9 +64,9 @@ class FrameReader {
     read_exposure();
     read_gain();
     read_saturation();
+    read_bias();
     set_flags();
-    if (options_.use_overscan && !is_cube_)
-      detail::subtract_overscan(reader_, unit_, options_.bias, file_.frame, file_.notes);
+    if (options_.use_overscan && !is_cube_) detail::subtract_overscan(reader_, unit_, file_.frame, file_.notes);
     try {
       file_.sky = SkyProjection::from_header(reader_.header_text(unit_), reader_.file());
     } catch (const InputError& error) {
@@ -110,7 +110,6 @@ class FrameReader {
     } else {
       file_.notes.emplace_back("The header gives no exposure time: 1 s assumed.");
     }
-    if (options_.bias) header.bias = *options_.bias;
     const auto noise = first_number(reader_, unit_, {"RDNOISE", "READNOIS", "RON", "READNOISE", "RDNOISE1", "RDNOIS1"});
     if (options_.readout_noise) {
       header.readout_noise = *options_.readout_noise;
@@ -134,6 +133,7 @@ class FrameReader {
     } else if (gain && gain->value > 0.0) {
       header.gain = Gain(gain->value);
     } else {
+      file_.gain_assumed = true;
       file_.notes.emplace_back("The header gives no gain: 1 e-/ADU assumed, so errors are only as good as that.");
     }
   }
@@ -147,6 +147,21 @@ class FrameReader {
       header.saturation = Adu(level->value);
     } else {
       header.saturation = Adu(largest_number());
+    }
+  }
+
+  // Only light brings photon noise, so a bias that nobody knows of makes every error too large.
+  void read_bias() {
+    FrameHeader& header = file_.frame.header;
+    const auto prescan = is_cube_ ? std::nullopt : detail::prescan_level(reader_, unit_, header);
+    if (options_.bias) {
+      header.bias = *options_.bias;
+    } else if (prescan) {
+      header.bias = *prescan;
+    } else if (const auto level = first_number(reader_, unit_, {"BIAS"});
+               level && reader_.unit_of(unit_, "BIAS") == "adu") {
+      // Others keep voltages under this name.
+      header.bias = Adu(level->value);
     }
   }
 

@@ -50,21 +50,18 @@ ReferenceNoise noise_of(const FrameHeader& header, double bias) {
   return {.readout = std::hypot(header.readout_noise.value() / gain, quantisation), .gain = gain, .bias = bias};
 }
 
-double bias_of(const FitsReader& reader, int image_unit, const std::optional<Adu>& bias, const FrameHeader& header) {
-  if (bias) return bias->value();
+}  // namespace
+
+std::optional<Adu> prescan_level(const FitsReader& reader, int image_unit, const FrameHeader& header) {
   std::vector<float> values;
   for (const ReferenceImage& image : read_all(reader, image_unit, "PRESCAN"))
     values.insert(values.end(), image.pixels.pixels().begin(), image.pixels.pixels().end());
   // Without light, so that the bias of the noise does not matter.
   const double level = reference_level(values, noise_of(header, std::numeric_limits<double>::max()));
-  if (std::isfinite(level)) return level;
-  return reader.number(image_unit, "BIAS").value_or(0.0);
+  return std::isfinite(level) ? std::optional(Adu(level)) : std::nullopt;
 }
 
-}  // namespace
-
-void subtract_overscan(const FitsReader& reader, int image_unit, const std::optional<Adu>& bias, Frame& frame,
-                       std::vector<std::string>& notes) {
+void subtract_overscan(const FitsReader& reader, int image_unit, Frame& frame, std::vector<std::string>& notes) {
   const Rectangle image = frame.pixels.layout().regions()[0];
   const std::vector<ReferenceImage> found = read_all(reader, image_unit, "OVERSCAN");
   if (found.empty()) return;
@@ -82,7 +79,7 @@ void subtract_overscan(const FitsReader& reader, int image_unit, const std::opti
     notes.emplace_back("The OVERSCAN extension does not lie above the image (LTV1, LTV2) and was not used.");
     return;
   }
-  const double level = bias_of(reader, image_unit, bias, frame.header);
+  const double level = frame.header.bias.value();
   const auto view = frame.pixels.view(0);
   const auto subtract = [&](const ReferenceImage& overscan, int y0, int y1) {
     std::vector<double> levels(static_cast<std::size_t>(overscan.area.nx));

@@ -3,6 +3,7 @@
 #include "astroid/core/ecliptic.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/sphere.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
@@ -26,6 +27,13 @@ Velocity spacecraft_velocity(double mjd) {
   const double vy = speed * (det::cos(longitude) + earth.eccentricity * det::cos(perihelion));
   const SineCosine obliquity = sine_cosine(kObliquity);
   return {vx, vy * obliquity.cosine, vy * obliquity.sine};
+}
+
+Velocity velocity_since_start(const SimulationSettings& simulation, Seconds time) {
+  const Velocity at_start = spacecraft_velocity(simulation.start_mjd);
+  Velocity v = spacecraft_velocity(simulation.start_mjd + time.value() / kSecondsPerDay);
+  for (std::size_t i = 0; i < v.size(); ++i) v[i] -= at_start[i];
+  return v;
 }
 
 AberrationJacobian aberration_jacobian(SkyPosition star, const Boresight& boresight, const AttitudeJacobian& motion) {

@@ -10,10 +10,11 @@ namespace astroid {
 
 namespace {
 
-constexpr std::size_t kAxes = 3;
+constexpr std::size_t kAxes = 4;
+constexpr std::size_t kTime = 3;
 
-std::array<double, kAxes> axes(const Attitude& a) {
-  return {a.yaw, a.pitch, a.roll};
+std::array<double, kAxes> axes(const Attitude& a, double time) {
+  return {a.yaw, a.pitch, a.roll, time};
 }
 
 /// Points of an axis in units of the scale, in the order in which higher powers take them: a Leja sequence of [-1, 1].
@@ -31,11 +32,22 @@ double term(const AttitudePowers& powers, const std::array<double, kAxes>& x) {
   return value;
 }
 
-/// The derivative of the order that the powers add up to.
-double derivative_of(std::span<const double> derivatives, const AttitudePowers& powers) {
+/// The derivative of the order that the powers of the attitude add up to, and by time as often as its power says:
+/// Faà di Bruno's formula for a displacement px (e^(rate t) - 1), whose derivatives are the largest that there may be.
+double derivative_of(std::span<const double> derivatives, const AttitudePowers& powers, const SlowMotion& slow) {
   std::size_t order = 0;
-  for (const int p : powers) order += static_cast<std::size_t>(p);
-  return derivatives[order];
+  for (std::size_t axis = 0; axis < kTime; ++axis) order += static_cast<std::size_t>(powers[axis]);
+  const auto l = static_cast<std::size_t>(powers[kTime]);
+  if (l == 0) return derivatives[order];
+  std::vector<double> stirling(l + 1, 0.0);  // S(l, q), from S(0, 0) on
+  stirling[0] = 1.0;
+  for (std::size_t row = 1; row <= l; ++row) {
+    for (std::size_t q = row; q > 0; --q) stirling[q] = static_cast<double>(q) * stirling[q] + stirling[q - 1];
+    stirling[0] = 0.0;
+  }
+  double sum = 0.0;
+  for (std::size_t q = l; q > 0; --q) sum = (sum + stirling[q] * derivatives[order + q]) * slow.px;
+  return power(slow.rate, powers[kTime]) * sum;
 }
 
 bool holds(const std::vector<AttitudePowers>& terms, const AttitudePowers& powers) {
@@ -61,20 +73,25 @@ std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> deriva
   };
   constexpr double kFactorials[] = {1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0};
   const int highest = static_cast<int>(std::min(derivatives.size(), std::size(kFactorials))) - 1;
-  const std::array<double, kAxes> r{reach.yaw, reach.pitch, reach.roll};
+  const std::array<double, kAxes> r{reach.yaw, reach.pitch, reach.roll, 1.0};
+  const int highest_of_time = reach.slow.px > 0.0 ? highest : 0;
   std::vector<Candidate> candidates;
   left_out = 0.0;
   for (int i = 0; i <= highest; ++i)
     for (int j = 0; i + j <= highest; ++j)
-      for (int k = 0; i + j + k <= highest; ++k) {
-        const AttitudePowers powers{i, j, k};
-        double bound = derivative_of(derivatives, powers) * term(powers, r);
-        for (const int p : powers) bound /= kFactorials[p];
-        if (i + j + k == 0 || !(bound > 0.0)) continue;
-        candidates.push_back({powers, bound});
-        left_out += bound;
-      }
-  std::vector<AttitudePowers> terms{{0, 0, 0}};
+      for (int k = 0; i + j + k <= highest; ++k)
+        for (int l = 0; i + j + k + l <= highest && l <= highest_of_time; ++l) {
+          const AttitudePowers powers{i, j, k, l};
+          double bound = derivative_of(derivatives, powers, reach.slow) * term(powers, r);
+          for (const int p : powers) bound /= kFactorials[p];
+          // A line through the points 0 and 1 is off by twice Taylor's term at -1, where times go and jitter seldom
+          // does.
+          if (l == 2) bound *= 2.0;
+          if (i + j + k + l == 0 || !(bound > 0.0)) continue;
+          candidates.push_back({powers, bound});
+          left_out += bound;
+        }
+  std::vector<AttitudePowers> terms{{0, 0, 0, 0}};
   while (left_out > allowed) {
     if (terms.size() == most) return {};
     auto best = candidates.end();
@@ -99,12 +116,19 @@ Attitude cell_centre(const AttitudePolynomial& polynomial, const Attitude& attit
           centre(attitude.roll, polynomial.scale.roll)};
 }
 
-std::vector<Attitude> interpolation_points(const AttitudePolynomial& polynomial, const Attitude& centre) {
-  std::vector<Attitude> points;
+int AttitudePolynomial::highest_power_of_time() const {
+  int highest = 0;
+  for (const AttitudePowers& p : terms) highest = std::max(highest, p[kTime]);
+  return highest;
+}
+
+std::vector<MotionPoint> interpolation_points(const AttitudePolynomial& polynomial, const Attitude& centre) {
+  std::vector<MotionPoint> points;
   for (const AttitudePowers& p : polynomial.terms)
-    points.push_back({centre.yaw + polynomial.scale.yaw * kLejaPoints[p[0]],
-                      centre.pitch + polynomial.scale.pitch * kLejaPoints[p[1]],
-                      centre.roll + polynomial.scale.roll * kLejaPoints[p[2]]});
+    points.push_back({.attitude = {centre.yaw + polynomial.scale.yaw * kLejaPoints[p[0]],
+                                   centre.pitch + polynomial.scale.pitch * kLejaPoints[p[1]],
+                                   centre.roll + polynomial.scale.roll * kLejaPoints[p[2]]},
+                      .time = kLejaPoints[p[kTime]]});
   return points;
 }
 
@@ -115,7 +139,7 @@ std::vector<double> coefficients_from_values(const AttitudePolynomial& polynomia
   std::vector<double> inverse(n * n, 0.0);
   for (std::size_t point = 0; point < n; ++point) {
     const AttitudePowers& p = polynomial.terms[point];
-    const std::array<double, kAxes> x{kLejaPoints[p[0]], kLejaPoints[p[1]], kLejaPoints[p[2]]};
+    const std::array<double, kAxes> x{kLejaPoints[p[0]], kLejaPoints[p[1]], kLejaPoints[p[2]], kLejaPoints[p[kTime]]};
     for (std::size_t t = 0; t < n; ++t) a[point * n + t] = term(polynomial.terms[t], x);
     inverse[point * n + point] = 1.0;
   }
@@ -146,12 +170,12 @@ std::vector<double> coefficients_from_values(const AttitudePolynomial& polynomia
 }
 
 std::vector<double> mean_of_terms(const AttitudePolynomial& polynomial, const Attitude& centre,
-                                  std::span<const Attitude> attitudes) {
+                                  std::span<const Attitude> attitudes, double time) {
   std::vector<double> mean(polynomial.terms.size(), 0.0);
-  const std::array<double, kAxes> c = axes(centre);
-  const std::array<double, kAxes> scale = axes(polynomial.scale);
+  const std::array<double, kAxes> c = axes(centre, 0.0);
+  const std::array<double, kAxes> scale = axes(polynomial.scale, 1.0);
   for (const Attitude& attitude : attitudes) {
-    std::array<double, kAxes> x = axes(attitude);
+    std::array<double, kAxes> x = axes(attitude, time);
     for (std::size_t axis = 0; axis < kAxes; ++axis)
       x[axis] = scale[axis] > 0.0 ? (x[axis] - c[axis]) / scale[axis] : 0.0;
     for (std::size_t t = 0; t < mean.size(); ++t) mean[t] += term(polynomial.terms[t], x);

@@ -10,12 +10,12 @@
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/error.hpp"
 #include "astroid/core/run_time.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
 namespace {
 
-constexpr double kSecondsPerDay = 86400.0;
 constexpr std::size_t kAxes = 3;
 // Of a thermo-elastic polynomial of unit amplitude over a quarter: 1.5e-6 x 90 d / 12 and 1e-13 x (90 d)² / 12.
 // @source Jannsen2024

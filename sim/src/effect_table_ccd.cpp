@@ -43,7 +43,7 @@ namespace {
 using CcdTable =
     EffectTable<ProperMotionEffect,                                                                    // Catalogue
                 JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, AberrationEffect,  // Pointing
-                Throughput, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,                    // Optics
+                ThroughputEffect, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,              // Optics
                 Sky, ZodiacalSky, StrayLight,                                                          // Sky
                 IntraPixelResponse,                                                                    // SubPixel
                 Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, ChargeInjection, OpenShutterSmearing,

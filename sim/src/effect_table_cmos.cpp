@@ -45,10 +45,10 @@ namespace {
 // From PhotonNoise to RampReads: once for every read.
 using CmosTable = EffectTable<ProperMotionEffect,  // Catalogue
                               JitterModelEffect, JitterFileEffect, DriftEffect, RepointingEffect, RollingShutter,
-                              AberrationEffect,                                                    // Pointing
-                              Throughput, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,  // Optics
-                              Sky, ZodiacalSky, StrayLight,                                        // Sky
-                              IntraPixelResponse,                                                  // SubPixel
+                              AberrationEffect,                                                          // Pointing
+                              ThroughputEffect, Breathing, Stars, SubPixelStars, VariableStars, Ghosts,  // Optics
+                              Sky, ZodiacalSky, StrayLight,                                              // Sky
+                              IntraPixelResponse,                                                        // SubPixel
                               Vignetting, FlatField, Prnu, DeadPixels, DarkCurrent, HotPixels, TelegraphPixels,
                               Persistence,                               // PixelMean
                               PhotonNoise, CosmicRays, PixelSaturation,  // PixelSample

@@ -26,7 +26,7 @@ MovingImage::MovingImage(AttitudePolynomial polynomial, std::size_t pixels)
       cells_(most_cells(polynomial_, pixels)) {}
 
 MovingImageCell MovingImage::make_cell(const Attitude& centre, const RenderAt& render) const {
-  const std::vector<Attitude> points = interpolation_points(polynomial_, centre);
+  const std::vector<MotionPoint> points = interpolation_points(polynomial_, centre);
   const std::size_t n = points.size();
   // One image after the other is rendered and added to every coefficient, so few are held at a time.
   std::vector<Plane<double, unit::ExpectedElectrons>> coefficients;
@@ -51,9 +51,10 @@ MovingImageCell MovingImage::make_cell(const Attitude& centre, const RenderAt& r
   return cell;
 }
 
-std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::span<const Attitude> attitudes) {
+std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::span<const Attitude> attitudes,
+                                    double time) {
   const Attitude centre = cell_centre(polynomial, attitude_moments(attitudes).mean);
-  const std::vector<double> terms = mean_of_terms(polynomial, centre, attitudes);
+  const std::vector<double> terms = mean_of_terms(polynomial, centre, attitudes, time);
   std::vector<float> weights;
   for (std::size_t t = 1; t < terms.size(); ++t) weights.push_back(static_cast<float>(terms[t]));
   return weights;

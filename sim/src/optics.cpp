@@ -5,7 +5,6 @@
 
 #include "astroid/core/camera_groups.hpp"
 #include "astroid/core/math.hpp"
-#include "astroid/sim/accuracy_shares.hpp"
 
 namespace astroid {
 
@@ -56,9 +55,9 @@ SkyProjection make_projection(const Mission& mission) {
   return SkyProjection(make_pointing(mission));
 }
 
-std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {
+std::shared_ptr<const PixelPsf> make_psf(const Mission& mission, const PsfAccuracy& accuracy,
+                                         const PixelResponse& response) {
   const PsfSettings& psf = mission.psf;
-  const double accuracy = kAccuracyShares.psf * 1e-6 * mission.simulation.accuracy.value();
   const PsfWings wings{.reach = psf.reach, .diffusion = psf.diffusion.value()};
   switch (psf.model) {
     case PsfModel::kGaussian:
@@ -67,15 +66,23 @@ std::shared_ptr<const PixelPsf> make_psf(const Mission& mission) {
     case PsfModel::kTable:
       return make_prf_psf(psf.diffusion.value() > 0.0 ? diffuse_psf_table(read_psf_table(psf.file), psf.diffusion)
                                                       : read_psf_table(psf.file),
-                          accuracy, psf.phases);
+                          accuracy, psf.phases, response);
     case PsfModel::kMoffat:
-      return make_moffat_psf(psf.fwhm.value(), psf.beta, wings, accuracy, psf.phases);
+      return make_moffat_psf(psf.fwhm.value(), psf.beta, wings, accuracy, psf.phases, response);
     case PsfModel::kAiry:
-      return make_airy_psf(psf.lambda_over_d.value(), psf.obscuration, wings, accuracy, psf.phases);
+      return make_airy_psf(psf.lambda_over_d.value(), psf.obscuration, wings, accuracy, psf.phases, response);
     case PsfModel::kField:
-      return make_field_psf(read_field_psf(psf.file), psf.diffusion, accuracy, psf.phases);
+      return make_field_psf(read_field_psf(psf.file), psf.diffusion, accuracy, psf.phases, response);
   }
   throw BugError("unknown PSF model");
+}
+
+double psf_reach(const Mission& mission, double lost) {
+  if (mission.psf.model == PsfModel::kMoffat || mission.psf.model == PsfModel::kAiry) return mission.psf.reach;
+  // What a table reaches does not depend on the phases of its library.
+  Mission sketch = mission;
+  sketch.psf.phases = 1;
+  return make_psf(sketch, 1.0)->stamp_half_width(lost);
 }
 
 }  // namespace astroid

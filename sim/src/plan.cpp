@@ -77,6 +77,17 @@ std::string describe_pixels(const Scene& scene, const Plan& plan) {
   return text;
 }
 
+/// A library or map that is not as fine as the accuracy needs: as fine as it may get, or as the configuration says.
+void note_coarse_psf(const Scene& scene, Plan& plan) {
+  const double share = kAccuracyShares.psf * scene.summary().accuracy;
+  if (plan.renderer_error <= share) return;
+  plan.approximations.push_back(fmt::format(
+      "the accuracy asked for is not kept: the PSF errs by {:.2g} ppm, more than its share of {:.2g} ppm; {}",
+      1e6 * plan.renderer_error, 1e6 * share,
+      scene.sub_pixel_renderer() != nullptr ? "Simulation/SubPixels can be larger"
+                                            : "more PSF/Phases or the renderer subpixel may keep it"));
+}
+
 /// Rounding is noise of gain / sqrt(12) only where something blurs its steps (N25).
 void note_coarse_converter(const Scene& scene, std::vector<std::string>& approximations) {
   constexpr double kLeastNoise = 0.5;  // ADU
@@ -141,10 +152,12 @@ std::shared_ptr<const PixelLayout> plan_layout(const Scene& scene, const Plan& p
   return std::make_shared<const PixelLayout>(std::move(regions), reference);
 }
 
-std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
+/// @param motion  whether what moves stars smoothly counts
+std::int64_t plan_epochs(const Scene& scene, const Plan& plan, bool motion) {
   double steady = std::numeric_limits<double>::infinity();
   for (const PlannedEffect& planned : plan.effects)
-    if (planned.need.needed) steady = std::min(steady, planned.need.steady.value());
+    if (planned.need.needed && (motion || planned.need.motion == SlowMotion{}))
+      steady = std::min(steady, planned.need.steady.value());
   if (std::isinf(steady)) return 0;
   // Whatever the length of the run, so that a longer run begins with the shorter one.
   constexpr double kMost = 1e9;
@@ -153,9 +166,16 @@ std::int64_t plan_epochs(const Scene& scene, const Plan& plan) {
 
 }  // namespace
 
-Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch) {
+double Plan::place_in_epoch(std::int64_t exposure) const {
+  if (epoch_exposures <= 0 || knobs.polynomial.highest_power_of_time() == 0) return 0.0;
+  const std::int64_t within = exposure - epoch(exposure) * epoch_exposures;
+  return static_cast<double>(2 * within - (epoch_exposures - 1)) / static_cast<double>(epoch_exposures);
+}
+
+Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch, double place) {
   const std::int64_t length = std::max<std::int64_t>(1, plan.epoch_exposures);
-  const double middle = static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1);
+  const double middle = static_cast<double>(epoch * length) + 0.5 * static_cast<double>(length - 1) +
+                        0.5 * place * static_cast<double>(length);
   const SimulationSettings& simulation = scene.mission().simulation;
   const Seconds time = simulation.stagger + (middle * simulation.cycle + 0.5 * simulation.exposure_time);
   Conditions conditions;
@@ -179,7 +199,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs, int least_attitude_
   }
   plan.reads = scene.mission().simulation.type == DetectorType::kCmos ? scene.mission().cmos.reads : 1;
   plan.layout = plan_layout(scene, plan);
-  plan.epoch_exposures = plan_epochs(scene, plan);
+  plan.epoch_exposures = plan_epochs(scene, plan, true);
   // Images that are used a few times only are rendered for each exposure instead.
   const bool steady = plan.epoch_exposures == 0 || plan.epoch_exposures >= kFewExposures;
   plan.still = !moves && steady;
@@ -194,9 +214,11 @@ Plan make_plan(const Scene& scene, const CostFactors& costs, int least_attitude_
   if (moves) plan_jitter(scene, kAccuracyShares.jitter, plan);
   if (moves) plan_bands(scene, plan);
   if (moves && steady) plan_polynomial(scene, kAccuracyShares.jitter, plan);
+  plan_slow_motion(scene, kAccuracyShares.jitter, plan_epochs(scene, plan, false), plan);
   plan_memory(scene, plan);
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
+  note_coarse_psf(scene, plan);
   if (map != nullptr && plan.knobs.variables && scene.mission().psf.intra_pixel.flat > 0.0)
     plan.approximations.emplace_back(
         "stars that vary see the sensitivity that all pixels share, not what the cells of each have of their own");

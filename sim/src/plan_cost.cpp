@@ -70,7 +70,7 @@ constexpr double kDeposit = 3500.0;  ///< ns a star, once for each tile that it 
 constexpr double kMapCell = 15.0;    ///< ns a cell of the light
 /// Of persistence (bench: BM_Persistence): what each pixel gives, and what it takes from each image that is kept.
 constexpr double kTaking = 0.4;
-constexpr double kPastImage = 0.3;
+constexpr double kPastImage = 0.6;
 constexpr double kNanosecond = 1e-9;
 
 /// Ns a pixel of what moves charge between pixels (bench: BM_ChargeTransfer, BM_Traps, BM_BrighterFatter); rows are
@@ -146,9 +146,10 @@ double map_seconds(const Plan& plan, const Scene& scene, std::span<const Rectang
   }
   const double share = pixels / std::max(1.0, static_cast<double>(scene.detector().size()));
   const double deposits = share * static_cast<double>(scene.summary().stars) * renderings(plan);
-  const double nodes = static_cast<double>(map.map_size());
+  const auto maps = static_cast<double>(map.maps());
+  const double nodes = maps * static_cast<double>(map.map_size());
   const double cells = static_cast<double>(map.cells()) * map.cells();
-  return kNanosecond * (tiles * nodes * kMapNode + deposits * kDeposit + pixels * cells * kMapCell);
+  return kNanosecond * (tiles * nodes * kMapNode + maps * deposits * kDeposit + pixels * cells * kMapCell);
 }
 
 /// Whether the noiseless image is recalled rather than rendered.

@@ -33,8 +33,10 @@ struct Candidate {
   double seconds = std::numeric_limits<double>::infinity();  ///< an exposure, its share of making the cells included
 };
 
-/// Cells that hold the jitter and a part of the drift's extent.
-Candidate with_part(const Scene& scene, const Plan& plan, const AttitudeReach& unit, double part, double allowed) {
+/// Cells that hold the jitter and a part of the drift's extent, in epochs of so many exposures (0: one for all).
+/// @param unit  with the slow motion within an epoch
+Candidate with_part(const Scene& scene, const Plan& plan, const AttitudeReach& unit, double part, double allowed,
+                    std::int64_t epoch = 0) {
   constexpr std::size_t kMostTerms = 24;
   constexpr double kMostBytes = 512.0 * 1024.0 * 1024.0;  // of a detector's maps
   const AttitudeVariance variance = scene.attitude().variance();
@@ -51,7 +53,7 @@ Candidate with_part(const Scene& scene, const Plan& plan, const AttitudeReach& u
   const double beyond = scene.attitude_trend().is_still() ? 0.0 : kReach * scene.summary().attitude_rms_in_exposure_px;
   const AttitudeReach reach{unit.yaw * scale.yaw + (scale.yaw > 0.0 ? beyond : 0.0),
                             unit.pitch * scale.pitch + (scale.pitch > 0.0 ? beyond : 0.0),
-                            unit.roll * scale.roll + (scale.roll > 0.0 ? beyond : 0.0)};
+                            unit.roll * scale.roll + (scale.roll > 0.0 ? beyond : 0.0), unit.slow};
   std::vector<AttitudePowers>& terms = candidate.polynomial.terms;
   terms = choose_attitude_terms(scene.summary().psf.derivatives, reach, allowed, kMostTerms, candidate.left_out);
   const auto pixels = static_cast<double>(scene.detector().size());
@@ -64,8 +66,9 @@ Candidate with_part(const Scene& scene, const Plan& plan, const AttitudeReach& u
           : 1.0 + entered(drift.yaw, scale.yaw) + entered(drift.pitch, scale.pitch) + entered(drift.roll, scale.roll);
   Plan once = plan;
   once.knobs.jitter = JitterTreatment::kShift;
-  const double share =
-      cells * static_cast<double>(terms.size()) / static_cast<double>(scene.mission().simulation.exposures);
+  const double made = cells / static_cast<double>(scene.mission().simulation.exposures) +
+                      (epoch > 0 ? 1.0 / static_cast<double>(epoch) : 0.0);
+  const double share = made * static_cast<double>(terms.size());
   candidate.seconds = maps_seconds(terms.size(), pixels) + share * full_frame_seconds(once, scene);
   return candidate;
 }
@@ -99,21 +102,76 @@ void plan_jitter(const Scene& scene, double share, Plan& plan) {
   }
 }
 
+namespace {
+
+/// The cheapest polynomial.  @param unit, epoch  as of with_part()
+Candidate cheapest(const Scene& scene, const Plan& plan, const AttitudeReach& unit, double allowed,
+                   std::int64_t epoch = 0) {
+  // The wider a cell, the fewer are made along the drift, and the more terms each needs.
+  constexpr double kSmallestPart = 1e-4;
+  Candidate best = with_part(scene, plan, unit, 0.0, allowed, epoch);
+  if (!scene.attitude_trend().is_still())
+    for (double part = 1.0; part > kSmallestPart; part *= 0.5) {
+      Candidate candidate = with_part(scene, plan, unit, part, allowed, epoch);
+      if (candidate.seconds < best.seconds) best = std::move(candidate);
+    }
+  return best;
+}
+
+/// What the noiseless image of an exposure takes by the plan as it is, its share of what is made for an epoch included.
+double image_seconds(const Scene& scene, const Plan& plan) {
+  if (!plan.still && plan.knobs.jitter != JitterTreatment::kPolynomial) return full_frame_seconds(plan, scene);
+  const std::size_t terms = std::max<std::size_t>(1, plan.knobs.polynomial.terms.size());
+  Plan once = plan;
+  once.knobs.jitter = JitterTreatment::kShift;
+  const double per_exposure = plan.epoch_exposures > 0 ? 1.0 / static_cast<double>(plan.epoch_exposures) : 0.0;
+  return static_cast<double>(terms) * per_exposure * full_frame_seconds(once, scene) +
+         (plan.still ? 0.0 : maps_seconds(terms, static_cast<double>(scene.detector().size())));
+}
+
+}  // namespace
+
 void plan_polynomial(const Scene& scene, double share, Plan& plan) {
   const SceneSummary& s = scene.summary();
   const double flux = s.brightest_target_electrons;
   if (!(flux > 0.0)) return;
   const double allowed = share * s.flux_tolerance(flux) / flux;
-  const AttitudeReach unit = per_arcsec(scene);
-  // The wider a cell, the fewer are made along the drift, and the more terms each needs.
-  constexpr double kSmallestPart = 1e-4;
-  Candidate best = with_part(scene, plan, unit, 0.0, allowed);
-  if (!scene.attitude_trend().is_still())
-    for (double part = 1.0; part > kSmallestPart; part *= 0.5) {
-      Candidate candidate = with_part(scene, plan, unit, part, allowed);
-      if (candidate.seconds < best.seconds) best = std::move(candidate);
-    }
+  Candidate best = cheapest(scene, plan, per_arcsec(scene), allowed);
   if (!(best.seconds <= full_frame_seconds(plan, scene))) return;
+  plan.knobs.jitter = JitterTreatment::kPolynomial;
+  plan.knobs.polynomial = std::move(best.polynomial);
+  plan.jitter_error = flux * best.left_out;
+}
+
+void plan_slow_motion(const Scene& scene, double share, std::int64_t longest, Plan& plan) {
+  SlowMotion slow;
+  for (const PlannedEffect& planned : plan.effects)
+    if (planned.need.needed) {
+      slow.px += planned.need.motion.px;
+      slow.rate = std::max(slow.rate, planned.need.motion.rate);
+    }
+  const SceneSummary& s = scene.summary();
+  const double flux = s.brightest_target_electrons;
+  if (!(slow.px > 0.0) || !(flux > 0.0)) return;
+  const double allowed = share * s.flux_tolerance(flux) / flux;
+  AttitudeReach unit = per_arcsec(scene);
+  // Powers of two, whatever the length of the run, so that a longer run begins with the shorter one.
+  constexpr std::int64_t kShortest = 32;
+  constexpr std::int64_t kLongest = 1 << 20;
+  Candidate best;
+  best.seconds = image_seconds(scene, plan);
+  std::int64_t epoch = 0;
+  for (std::int64_t n = kShortest; n <= kLongest && (longest == 0 || n <= longest); n *= 2) {
+    const double half = 0.5 * static_cast<double>(n) * scene.mission().simulation.cycle.value();
+    unit.slow = {.px = slow.px, .rate = slow.rate * half};
+    Candidate candidate = cheapest(scene, plan, unit, allowed, n);
+    if (!(candidate.seconds < best.seconds)) continue;
+    best = std::move(candidate);
+    epoch = n;
+  }
+  if (epoch == 0) return;
+  plan.epoch_exposures = epoch;
+  plan.still = false;
   plan.knobs.jitter = JitterTreatment::kPolynomial;
   plan.knobs.polynomial = std::move(best.polynomial);
   plan.jitter_error = flux * best.left_out;

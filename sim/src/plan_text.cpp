@@ -11,6 +11,7 @@ namespace {
 
 constexpr double kMilli = 1e3;
 constexpr double kMebi = 1048576.0;
+constexpr double kSecondsPerHour = 3600.0;
 
 double ppm_of_brightest(double electrons, const SceneSummary& s) {
   return 1e6 * electrons / s.brightest_target_electrons;
@@ -63,8 +64,18 @@ std::string to_text(const Plan& plan, const Scene& scene) {
     out += fmt::format(
         "  jitter    {}, {} terms, their means taken over {} step(s) of an exposure: at most {:.2g} ppm of the\n"
         "            brightest target; {} fixed maps, {:.3g} MiB for all workers\n",
-        to_string(plan.knobs.jitter), terms, plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s), terms,
+        plan.knobs.polynomial.highest_power_of_time() > 0 ? "polynomial in attitude and time"
+                                                          : to_string(plan.knobs.jitter),
+        terms, plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s), terms,
         maps_bytes(terms, static_cast<double>(plan.layout->size())) / kMebi);
+    if (const int power = plan.knobs.polynomial.highest_power_of_time(); power > 0)
+      out += fmt::format(
+          "  slow      stars move by themselves within epochs of {} exposures ({:.3g} h): powers of time up to {} "
+          "among\n"
+          "            those terms, from images rendered at fixed times of the epoch\n",
+          plan.epoch_exposures,
+          static_cast<double>(plan.epoch_exposures) * scene.mission().simulation.cycle.value() / kSecondsPerHour,
+          power);
   } else {
     out += fmt::format("  jitter    {} with {} step(s) in an exposure: at most {:.2g} ppm of the brightest target\n",
                        to_string(plan.knobs.jitter), plan.knobs.attitude_steps, ppm_of_brightest(plan.jitter_error, s));
@@ -101,7 +112,7 @@ std::string to_json(const Plan& plan, const Scene& scene) {
   json["jitter"] = {{"treatment", to_string(plan.knobs.jitter)}, {"steps_per_exposure", plan.knobs.attitude_steps}};
   if (plan.knobs.jitter == JitterTreatment::kPolynomial) {
     const Attitude& scale = plan.knobs.polynomial.scale;
-    json["jitter"]["powers_of_yaw_pitch_roll"] = plan.knobs.polynomial.terms;
+    json["jitter"]["powers_of_yaw_pitch_roll_time"] = plan.knobs.polynomial.terms;
     json["jitter"]["cell_half_width_arcsec"] = {scale.yaw, scale.pitch, scale.roll};
   }
   json["errors_electrons"] = {{"stamps", plan.stamp_error}, {"psf", plan.psf_error}, {"jitter", plan.jitter_error}};

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "astroid/core/math.hpp"
-#include "astroid/sim/accuracy_shares.hpp"
+#include "astroid/sim/optics.hpp"
 
 namespace astroid {
 
@@ -19,11 +19,6 @@ constexpr double kSplineShare = 0.1;  ///< of that, for a Gaussian as a table
                            .message = message});
 }
 
-/// Whether the PSF can be had as a table or as a spectrum.
-bool is_tabular(const Mission& mission) {
-  return mission.psf.model == PsfModel::kGaussian || mission.psf.model == PsfModel::kTable;
-}
-
 /// Of the Gaussian, charge diffusion included.
 double gaussian_sigma(const Mission& mission) {
   return det::hypot(mission.psf.sigma.value(), mission.psf.diffusion.value());
@@ -34,10 +29,25 @@ PsfTable given_table(const Mission& mission) {
   return mission.psf.diffusion.value() > 0.0 ? diffuse_psf_table(table, mission.psf.diffusion) : std::move(table);
 }
 
-PsfTable psf_table(const Mission& mission) {
-  const double accuracy = kSplineShare * kAccuracyShares.psf * 1e-6 * mission.simulation.accuracy.value();
-  return mission.psf.model == PsfModel::kGaussian ? make_gaussian_table(gaussian_sigma(mission), accuracy)
-                                                  : given_table(mission);
+FieldSpectrum spectrum_of(const Mission& mission) {
+  const PsfSettings& psf = mission.psf;
+  const PsfWings wings{.reach = psf.reach, .diffusion = psf.diffusion.value()};
+  const auto everywhere = [](std::shared_ptr<const PsfSpectrum> spectrum) {
+    return FieldSpectrum{.members = {std::move(spectrum)}, .weights = {}};
+  };
+  switch (psf.model) {
+    case PsfModel::kGaussian:
+      return everywhere(make_gaussian_spectrum(gaussian_sigma(mission)));
+    case PsfModel::kTable:
+      return everywhere(make_table_spectrum(given_table(mission)));
+    case PsfModel::kMoffat:
+      return everywhere(make_moffat_spectrum(psf.fwhm.value(), psf.beta, wings));
+    case PsfModel::kAiry:
+      return everywhere(make_airy_spectrum(psf.lambda_over_d.value(), psf.obscuration, wings));
+    case PsfModel::kField:
+      return make_field_spectrum(read_field_psf(psf.file), psf.diffusion);
+  }
+  throw BugError("unknown PSF model");
 }
 
 }  // namespace
@@ -77,9 +87,6 @@ RendererChoice choose_renderer(const Mission& mission) {
   const bool gaussian = mission.psf.model == PsfModel::kGaussian;
   const bool response = has_intra_pixel_response(mission);
   const bool differs = response && mission.psf.intra_pixel.flat > 0.0;
-  if (response && !is_tabular(mission))
-    refuse(mission, "a Gaussian or a table as PSF",
-           "sensitivity within the pixel is known for a Gaussian or a tabulated PSF only");
   switch (mission.simulation.renderer) {
     case Renderer::kAuto:
       if (differs) return {Renderer::kSubPixel, "sensitivity within the pixel differs from pixel to pixel"};
@@ -94,19 +101,21 @@ RendererChoice choose_renderer(const Mission& mission) {
       if (differs) refuse(mission, "auto or subpixel", "sensitivity within the pixel differs from pixel to pixel");
       break;
     case Renderer::kSubPixel:
-      if (!is_tabular(mission)) refuse(mission, "auto or prf", "the sub-pixel map takes a Gaussian or a table as PSF");
       break;
   }
   return {mission.simulation.renderer, "the configuration says so"};
 }
 
-std::shared_ptr<const PixelPsf> make_recorded_psf(const Mission& mission, std::shared_ptr<const PixelPsf> optical) {
+std::shared_ptr<const PixelPsf> make_recorded_psf(const Mission& mission, const PsfAccuracy& accuracy,
+                                                  std::shared_ptr<const PixelPsf> optical) {
+  const bool response = has_intra_pixel_response(mission);
   const bool gaussian = mission.psf.model == PsfModel::kGaussian;
-  const bool library = choose_renderer(mission).renderer == Renderer::kPrf && gaussian;
-  if (!library && !has_intra_pixel_response(mission)) return optical;
-  return make_prf_psf(psf_table(mission), kAccuracyShares.psf * 1e-6 * mission.simulation.accuracy.value(),
-                      mission.psf.phases,
-                      has_intra_pixel_response(mission) ? common_response(mission.psf.intra_pixel) : PixelResponse{});
+  if (!response && !(gaussian && choose_renderer(mission).renderer == Renderer::kPrf)) return optical;
+  const PixelResponse common = response ? common_response(mission.psf.intra_pixel) : PixelResponse{};
+  if (!gaussian) return make_psf(mission, accuracy, common);
+  return make_prf_psf(
+      make_gaussian_table(gaussian_sigma(mission), kSplineShare * accuracy.relative * accuracy.least_light), accuracy,
+      mission.psf.phases, common);
 }
 
 std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& mission, double accuracy, double tight) {
@@ -114,9 +123,8 @@ std::shared_ptr<const SubPixelRenderer> make_sub_pixel_renderer(const Mission& m
   const SubPixelSettings settings{.accuracy = gaussian ? std::min(accuracy, tight) : accuracy,
                                   .sub_pixels = mission.simulation.sub_pixels,
                                   .cells = has_intra_pixel_response(mission) ? mission.psf.intra_pixel.cells : 1};
-  return std::make_shared<const SubPixelRenderer>(
-      gaussian ? make_gaussian_spectrum(gaussian_sigma(mission)) : make_table_spectrum(given_table(mission)),
-      Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
+  return std::make_shared<const SubPixelRenderer>(spectrum_of(mission),
+                                                  Rectangle{0, 0, mission.ccd.columns, mission.ccd.rows}, settings);
 }
 
 }  // namespace astroid

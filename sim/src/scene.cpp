@@ -20,6 +20,7 @@
 #include "astroid/core/run_time.hpp"
 #include "astroid/core/sphere.hpp"
 #include "astroid/core/throughput.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/sim/accuracy_shares.hpp"
 #include "astroid/sim/smearing.hpp"
 #include "effects/drift.hpp"
@@ -81,16 +82,10 @@ double aberration_px_per_second(const AberrationJacobian& j) {
 
 /// Velocities of the spacecraft relative to the start, over the run.
 std::vector<Velocity> velocities(const SimulationSettings& simulation) {
-  constexpr double kSecondsPerDay = 86400.0;
   constexpr int kPieces = 32;
-  const double days = static_cast<double>(simulation.exposures) * simulation.cycle.value() / kSecondsPerDay;
-  const Velocity start = spacecraft_velocity(simulation.start_mjd);
+  const Seconds length(static_cast<double>(simulation.exposures) * simulation.cycle.value());
   std::vector<Velocity> all;
-  for (int i = 1; i <= kPieces; ++i) {
-    Velocity v = spacecraft_velocity(simulation.start_mjd + days * i / kPieces);
-    for (std::size_t k = 0; k < v.size(); ++k) v[k] -= start[k];
-    all.push_back(v);
-  }
+  for (int i = 1; i <= kPieces; ++i) all.push_back(velocity_since_start(simulation, (1.0 * i / kPieces) * length));
   return all;
 }
 
@@ -139,6 +134,20 @@ double peak_pixel_bound(std::span<const SceneStar> stars, double peak_fraction) 
   return highest;
 }
 
+/// Of the faintest target, the wings of so many of the brightest star are thought to reach.
+constexpr double kNeighbours = 4.0;
+
+/// What the PSF may err: by the share of the accuracy that is its own, of the light in an aperture, which is that of
+/// the faintest target where the wings of brighter stars are less.
+PsfAccuracy psf_accuracy_of(const SceneSummary& s) {
+  // Stars more than so much brighter are taken as this much brighter.
+  constexpr double kFaintest = 1e-3;
+  constexpr double kLargest = 0.3;  // of a star's own light in a small aperture
+  const double brightest = kNeighbours * s.brightest_electrons;
+  const double light = s.targets > 0 && brightest > 0.0 ? s.tightest_tolerance() / s.accuracy / brightest : kLargest;
+  return {kAccuracyShares.psf * s.accuracy, std::clamp(light, kFaintest, kLargest)};
+}
+
 }  // namespace
 
 double star_electrons(Magnitude magnitude, const TelescopeSettings& telescope, Seconds exposure_time) {
@@ -154,11 +163,7 @@ std::vector<std::size_t> full_frame_targets(const Scene& scene) {
 }
 
 Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
-    : mission_(mission),
-      renderer_(choose_renderer(mission)),
-      optical_psf_(make_psf(mission)),
-      psf_(make_recorded_psf(mission, optical_psf_)),
-      jitter_(make_jitter(mission)) {
+    : mission_(mission), renderer_(choose_renderer(mission)), jitter_(make_jitter(mission)) {
   // What a camera sees is that of its group (group_mission()).
   ASTROID_CHECK_LE(mission_.telescope.groups.cameras.empty() ? -1 : 0, mission_.telescope.group);
   const CcdSettings& ccd = mission_.ccd;
@@ -173,7 +178,6 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   projection_.emplace(pointing);
 
   if (mission_.field.sky == SkyModel::kZodiacal) find_sky();
-  constexpr double kSecondsPerDay = 86400.0;
   summary_.epoch =
       julian_year(mission_.simulation.start_mjd + middle_of_run(mission_.simulation).value() / kSecondsPerDay);
 
@@ -182,7 +186,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   std::size_t not_projectable = 0;
   std::size_t too_faint = 0;
   std::size_t outside = 0;
-  const double reach = psf_->stamp_half_width(kNegligibleShare);
+  const double reach = psf_reach(mission_, kNegligibleShare);
   const double passed = mean_throughput(mission_);
   for (const CatalogueStar& star : catalogue.stars) {
     SceneStar s;
@@ -266,7 +270,6 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   s.listed_dead = bad_pixels_.dead.size();
   s.listed_hot = bad_pixels_.hot.size();
   for (const HotPixel& hot : bad_pixels_.hot) s.hottest = std::max(s.hottest, hot.current.value() * exposure);
-  s.psf = measure_sensitivity(*psf_);
   s.accuracy = 1e-6 * mission_.simulation.accuracy.value();
   s.cameras = mission_.telescope.cameras;
   s.exposures_per_bin = std::max(1.0, std::floor(mission_.analysis.bin / mission_.simulation.cycle));
@@ -289,6 +292,7 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   const std::vector<Velocity> velocity =
       satellite.aberration ? velocities(mission_.simulation) : std::vector<Velocity>{};
   s.faintest_target_electrons = std::numeric_limits<double>::infinity();
+  double brightest_target = 0.0;
   for (const SceneStar& star : stars_) {
     s.attitude_rms_px = std::max(s.attitude_rms_px, rms_px(star.motion, jitter));
     s.attitude_rms_in_exposure_px = std::max(s.attitude_rms_in_exposure_px, rms_px(star.motion, within));
@@ -308,13 +312,17 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
     // Decisions are the same for windows and full frame, so "target" here is by brightness alone.
     if (may_be_target(star, mission_)) {
       ++s.targets;
-      // What a saturated star's flux means does not depend on ppm.
-      const double unsaturated = ccd.full_well.value() / s.psf.peak_fraction;
-      s.brightest_target_electrons = std::max(s.brightest_target_electrons, std::min(star.electrons, unsaturated));
+      brightest_target = std::max(brightest_target, star.electrons);
       s.faintest_target_electrons = std::min(s.faintest_target_electrons, star.electrons);
     }
   }
   if (s.targets == 0) s.faintest_target_electrons = 0.0;
+  const PsfAccuracy psf_accuracy = psf_accuracy_of(s);
+  optical_psf_ = make_psf(mission_, psf_accuracy);
+  psf_ = make_recorded_psf(mission_, psf_accuracy, optical_psf_);
+  s.psf = measure_sensitivity(*psf_);
+  // What a saturated star's flux means does not depend on ppm.
+  s.brightest_target_electrons = std::min(brightest_target, ccd.full_well.value() / s.psf.peak_fraction);
   s.stars = stars_.size();
   for (const Ghost& ghost : ghosts_) s.ghost_light += ghost.electrons / disc_area(mission_.telescope.ghosts);
   s.ghosts = ghosts_.size();
@@ -327,7 +335,6 @@ Scene::Scene(const Mission& mission, const StarCatalogue& catalogue)
   if (ccd.smearing.model != SmearingModel::kNone) s.brightest_column = brightest_column_bound(*this);
   if (renderer_.renderer == Renderer::kSubPixel) {
     // What a bright star may leave on a faint target, as with stamps.
-    constexpr double kNeighbours = 4.0;
     constexpr double kRounding = 1e-13;
     const double brightest = kNeighbours * std::max(s.brightest_electrons, 1.0);
     sub_pixel_renderer_ =

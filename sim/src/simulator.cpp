@@ -9,6 +9,7 @@
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/digitise.hpp"
 #include "astroid/core/plane_kernels.hpp"
+#include "astroid/core/units.hpp"
 #include "astroid/sim/rolling_shutter.hpp"
 
 namespace astroid {
@@ -59,7 +60,6 @@ FrameHeader common_header(const Mission& mission, int camera) {
 void set_time(const Scene& scene, std::int64_t exposure, FrameHeader& header) {
   header.exposure = exposure;
   header.mid_time = scene.mid_time(exposure);
-  constexpr double kSecondsPerDay = 86400.0;
   header.mid_mjd = scene.mission().simulation.start_mjd + header.mid_time.value() / kSecondsPerDay;
 }
 
@@ -84,7 +84,8 @@ std::shared_ptr<const AttitudeSeries> make_attitude_series(const Scene& scene, c
     if (treatment == JitterTreatment::kSubSteps)
       series->samples.insert(series->samples.end(), exposure.begin(), exposure.end());
     if (treatment == JitterTreatment::kPolynomial) {
-      const std::vector<float> weights = exposure_weights(plan.knobs.polynomial, exposure);
+      const auto number = static_cast<std::int64_t>(series->moments.size() - 1) / series->bands;
+      const std::vector<float> weights = exposure_weights(plan.knobs.polynomial, exposure, plan.place_in_epoch(number));
       series->weights.insert(series->weights.end(), weights.begin(), weights.end());
     }
   };
@@ -236,7 +237,6 @@ void Simulator::begin(std::int64_t exposure, ExposureState& state) const {
   if (!remembers_) return;
   state.still = false;
   const Mission& mission = scene_->mission();
-  constexpr double kSecondsPerDay = 86400.0;
   const double quarter = mission.satellite.quarter_days * kSecondsPerDay / mission.simulation.cycle.value();
   for (const PastCharge& past : past_charge(*camera_.cmos.persistence, exposure, plan_->knobs.memory_block, quarter))
     state.past.push_back({.electrons = past_image(past.exposure), .share = past.share});
@@ -282,7 +282,8 @@ void Simulator::begin_light(std::int64_t exposure, ExposureState& state) const {
   state.frame.header = header_;
   set_time(*scene_, exposure, state.frame.header);
   const std::int64_t epoch = plan_->epoch(exposure);
-  state.conditions = plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch) : constant_;
+  state.conditions =
+      plan_->epoch_exposures > 0 ? conditions_of(*plan_, *scene_, epoch, plan_->place_in_epoch(exposure)) : constant_;
   for (std::size_t i = 0; i < plan_->effects.size(); ++i)
     if (plan_->effects[i].need.needed && is_pointing(plan_->effects[i].effect->spec()))
       take({Act::kApply, i}, state, whole_);
@@ -294,7 +295,10 @@ void Simulator::begin_light(std::int64_t exposure, ExposureState& state) const {
   if (moving_ == nullptr) return;
   const std::size_t maps = plan_->knobs.polynomial.terms.size() - 1;
   const auto bands = static_cast<std::size_t>(attitude_->bands);
-  const RenderAt at = [&](const Attitude& attitude) { return render(attitude, conditions); };
+  const bool in_time = plan_->knobs.polynomial.highest_power_of_time() > 0;
+  const RenderAt at = [&](const MotionPoint& point) {
+    return render(point.attitude, in_time ? conditions_of(*plan_, *scene_, epoch, point.time) : conditions);
+  };
   for (std::size_t band = 0; band < bands; ++band) {
     const std::size_t window = static_cast<std::size_t>(exposure) * bands + band;
     const Attitude& mean = bands > 1 ? attitude_->moments[window].mean : state.attitude.mean;

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "astroid/core/sub_pixel.hpp"
@@ -23,9 +25,14 @@ std::vector<StarLight> stars_on(int side, std::int64_t count) {
   return stars;
 }
 
-void render_frames(benchmark::State& state, int side, std::int64_t count, const SubPixelSettings& settings) {
+FieldSpectrum everywhere(std::shared_ptr<const PsfSpectrum> spectrum) {
+  return {.members = {std::move(spectrum)}, .weights = {}};
+}
+
+void render_frames(benchmark::State& state, int side, std::int64_t count, const SubPixelSettings& settings,
+                   const FieldSpectrum& psf = everywhere(make_gaussian_spectrum(0.6))) {
   const Rectangle detector{0, 0, side, side};
-  const SubPixelRenderer renderer(make_gaussian_spectrum(0.6), detector, settings);
+  const SubPixelRenderer renderer(psf, detector, settings);
   const std::vector<StarLight> stars = stars_on(side, count);
   SubPixelRenderer::Workspace workspace;
   std::vector<double> light;
@@ -63,6 +70,38 @@ void BM_SubPixelCells(benchmark::State& state) {
   render_frames(state, kSide, 1000, {.sub_pixels = 4, .cells = static_cast<int>(state.range(0))});
 }
 BENCHMARK(BM_SubPixelCells)->Arg(1)->Arg(5)->Arg(10)->Arg(20)->Unit(benchmark::kMillisecond);
+
+/// 0 Moffat, 1 Airy, 2 Airy to 0.01 ppm, 3 four tables over the field.
+struct Optics {
+  FieldSpectrum psf;
+  SubPixelSettings settings;
+};
+
+Optics optics(std::int64_t number) {
+  if (number == 0) return {everywhere(make_moffat_spectrum(1.4, 2.5, {})), {.accuracy = 3e-7}};
+  if (number == 1) return {everywhere(make_airy_spectrum(1.5, 0.3, {})), {.accuracy = 3e-7}};
+  if (number == 2) return {everywhere(make_airy_spectrum(1.5, 0.3, {})), {.accuracy = 3e-9}};
+  std::vector<FieldPsfTable> tables;
+  for (const PixelPosition place :
+       {PixelPosition{0.0, 0.0}, PixelPosition{kSide, 0.0}, PixelPosition{0.0, kSide}, PixelPosition{kSide, kSide}})
+    tables.push_back({place, make_gaussian_table(0.6 + 1e-3 * (place.x + place.y), 1e-6)});
+  return {make_field_spectrum(tables, Pixels(0.0)), {.accuracy = 3e-7}};
+}
+
+void BM_SubPixelOptics(benchmark::State& state) {
+  const Optics o = optics(state.range(0));
+  render_frames(state, kSide, 1000, o.settings, o.psf);
+}
+BENCHMARK(BM_SubPixelOptics)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
+
+void BM_SubPixelPrepareOptics(benchmark::State& state) {
+  while (state.KeepRunning()) {
+    const Optics o = optics(state.range(0));
+    const SubPixelRenderer renderer(o.psf, {0, 0, kSide, kSide}, o.settings);
+    benchmark::DoNotOptimize(renderer.map_size());
+  }
+}
+BENCHMARK(BM_SubPixelPrepareOptics)->DenseRange(0, 3)->Unit(benchmark::kMillisecond);
 
 void BM_SubPixelPrepare(benchmark::State& state) {
   while (state.KeepRunning()) {

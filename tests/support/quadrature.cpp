@@ -119,4 +119,21 @@ Density gaussian_density(long double sigma) {
   };
 }
 
+Density moffat_density(long double fwhm, long double beta) {
+  const long double alpha = fwhm / (2.0L * std::sqrt(std::pow(2.0L, 1.0L / beta) - 1.0L));
+  const long double peak = (beta - 1.0L) / (kPiLong * alpha * alpha);
+  return [=](long double x, long double y) { return peak * std::pow(1.0L + (x * x + y * y) / (alpha * alpha), -beta); };
+}
+
+Density airy_density(long double lambda_over_d, long double obscuration) {
+  const long double e2 = obscuration * obscuration;
+  const long double peak = kPiLong / 4.0L * (1.0L - e2) / (lambda_over_d * lambda_over_d);
+  const auto disc = [](long double v) { return v > 0.0L ? 2.0L * std::cyl_bessel_j(1.0L, v) / v : 1.0L; };
+  return [=](long double x, long double y) {
+    const long double v = kPiLong * std::sqrt(x * x + y * y) / lambda_over_d;
+    const long double amplitude = (disc(v) - e2 * disc(obscuration * v)) / (1.0L - e2);
+    return peak * amplitude * amplitude;
+  };
+}
+
 }  // namespace astroid::test

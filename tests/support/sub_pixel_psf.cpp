@@ -59,4 +59,21 @@ std::shared_ptr<const PixelPsf> make_sub_pixel_psf(std::shared_ptr<const PsfSpec
   return std::make_shared<const SubPixelPsf>(std::move(spectrum), reach, settings);
 }
 
+std::vector<double> light_by_cells(const SubPixelRenderer& renderer, const PixelResponse& response, PixelPosition star,
+                                   Rectangle box) {
+  const StarLight light{.centre = star, .electrons = 1.0};
+  SubPixelRenderer::Workspace workspace;
+  std::vector<double> p(box.size());
+  const int n = response.cells;
+  for (const Rectangle& tile : renderer.tiles()) {
+    std::vector<double> cells(tile.size() * static_cast<std::size_t>(n * n));
+    renderer.render_cells(tile, {&light, 1}, workspace, cells);
+    for (int y = 0; y < tile.ny * n; ++y)
+      for (int x = 0; x < tile.nx * n; ++x)
+        p[static_cast<std::size_t>((tile.y0 - box.y0 + y / n) * box.nx + tile.x0 - box.x0 + x / n)] +=
+            response.at(x % n, y % n) * cells[static_cast<std::size_t>(y * tile.nx * n + x)];
+  }
+  return p;
+}
+
 }  // namespace astroid::test

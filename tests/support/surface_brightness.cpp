@@ -101,6 +101,17 @@ SurfaceBrightness smooth_brightness(Density density) {
   return {std::move(density), {}, {}};
 }
 
+SurfaceBrightness faded_brightness(Density density, long double reach) {
+  const long double softness = std::min(0.5L, reach / 24.0L);
+  const std::vector<long double> ends = {-reach, reach};
+  return {[density = std::move(density), reach, softness](long double dx, long double dy) {
+            const long double r = std::hypot(dx, dy);
+            const long double edge = (r - reach + 6.0L * softness) / (std::sqrt(2.0L) * softness);
+            return r < reach ? 0.5L * std::erfc(edge) * density(dx, dy) : 0.0L;
+          },
+          ends, ends};
+}
+
 SurfaceBrightness table_brightness(const PsfTable& table) {
   const auto nx = static_cast<std::size_t>(table.samples.nx());
   const auto ny = static_cast<std::size_t>(table.samples.ny());

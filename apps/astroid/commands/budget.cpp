@@ -64,8 +64,10 @@ int budget(const BudgetOptions& options) {
   std::vector<double> magnitudes;
   const auto steps = static_cast<int>(std::floor((options.mag_to - options.mag_from) / options.mag_step + 1e-9));
   for (int i = 0; i <= steps; ++i) magnitudes.push_back(options.mag_from + i * options.mag_step);
-  const std::vector<BudgetRow> rows = analytic_budget(
-      mission, *imaged_psf(mission, make_recorded_psf(mission, make_psf(mission))), magnitudes, neighbours);
+  const PsfAccuracy accuracy(1e-6 * mission.simulation.accuracy.value());
+  const std::vector<BudgetRow> rows =
+      analytic_budget(mission, *imaged_psf(mission, make_recorded_psf(mission, accuracy, make_psf(mission, accuracy))),
+                      magnitudes, neighbours);
 
   fmt::print("{} at the centre of a pixel; noise in {:g} h with {} camera(s), ppm\n\n",
              neighbours.empty() ? "Isolated star" : "Star with neighbours", mission.analysis.bin.value() / 3600.0,

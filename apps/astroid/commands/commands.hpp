@@ -59,11 +59,14 @@ int budget(const BudgetOptions& options);
 struct PhotometryOptions {
   std::vector<std::string> images;
   std::string catalogue;
-  std::string method = "aperture";
+  std::string method = "auto";
   std::string psf;  ///< file or gaussian:SIGMA_PX
   bool ignore_overscan = false;
-  std::optional<double> radius, gain, read_noise, saturation, zero_point, exposure_time;
-  std::string background = "local";  ///< local, mesh or a number of ADU
+  std::optional<double> radius, correct_to, threshold, gain, read_noise, bias, saturation, zero_point, exposure_time;
+  std::string background;       ///< local, mesh or a number of ADU; empty: local, or mesh where stars are found
+  std::vector<double> annulus;  ///< inner and outer radius, px; empty: the default
+  std::optional<double> clip;   ///< sigma, of the annulus; 0: the plain median
+  std::string residual;         ///< file; empty: none
   std::string output = "sources.csv";
   bool overwrite = false;
 };

@@ -36,7 +36,8 @@ Image<float, unit::Adu> first_frame(const std::filesystem::path& folder) {
 }
 
 /// Statistics of the mean of the cameras before jitter correction, which is undone.
-std::vector<SeriesSummary> measured_series(const std::filesystem::path& file, std::int64_t exposures_per_bin) {
+std::vector<SeriesSummary> measured_series(const std::filesystem::path& file, const GroundSegment& ground,
+                                           std::int64_t exposures_per_bin) {
   const LightCurveReader reader(file.string());
   const LightCurveHeader& header = reader.contents().header;
   const std::size_t stars = reader.contents().stars.size();
@@ -50,8 +51,14 @@ std::vector<SeriesSummary> measured_series(const std::filesystem::path& file, st
     for (int camera = 1; camera <= header.cameras; ++camera) {
       const LightCurve curve = reader.read(star, camera);
       const std::vector<Attitude>& attitude = attitudes[static_cast<std::size_t>(camera) - 1];
-      for (std::size_t k = 0; k < sum.size(); ++k)
-        sum[k] += with_attitude(curve.flux[k] / curve.star.reference - 1.0, curve.star.response, attitude[k]);
+      const std::size_t group =
+          header.group.empty() ? 0 : static_cast<std::size_t>(header.group[static_cast<std::size_t>(camera) - 1]);
+      for (std::size_t k = 0; k < sum.size(); ++k) {
+        const AttitudeCorrection& correction =
+            correction_at(ground.corrections[group], static_cast<std::int64_t>(k));
+        sum[k] +=
+            with_attitude(curve.flux[k] / curve.star.reference - 1.0, correction.responses()[star], attitude[k]);
+      }
     }
     for (std::size_t k = 0; k < sum.size(); ++k) mean[k] = static_cast<float>(sum[k] / header.cameras);
     statistics.add(star, 0, mean);
@@ -107,7 +114,8 @@ StreamResult read_stream(const std::filesystem::path& file, const Scene& scene, 
     statistics.add(t, 0, deviation);
   }
   result.series = statistics.summaries();
-  if (ground.corrections.front() != nullptr) result.measured = measured_series(file, statistics.exposures_per_bin());
+  if (!ground.corrections.front().empty())
+    result.measured = measured_series(file, ground, statistics.exposures_per_bin());
   return result;
 }
 

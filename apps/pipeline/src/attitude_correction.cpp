@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/error.hpp"
@@ -44,9 +45,10 @@ Attitude reach_of(const Scene& scene) {
 }  // namespace
 
 AttitudeCorrection::AttitudeCorrection(const Scene& scene, const GroundModel& model,
-                                       std::span<const StarEstimator> estimators)
+                                       std::span<const StarEstimator> estimators, const Attitude& origin)
     : stream_(make_stream(scene.mission().simulation.seed, kKnowledgeOfAttitude, 0, 0)),
-      known_rms_(scene.mission().photometry.knowledge.attitude.value()) {
+      known_rms_(scene.mission().photometry.knowledge.attitude.value()),
+      origin_(origin) {
   for (const StarEstimator& estimator : estimators)
     responses_.push_back(attitude_response(estimator, scene.stars()[estimator.star].motion));
   if (scene.mission().photometry.jitter_correction == JitterCorrection::kKnown) {
@@ -65,20 +67,25 @@ AttitudeCorrection::AttitudeCorrection(const Scene& scene, const GroundModel& mo
 
 Attitude AttitudeCorrection::attitude(std::int64_t exposure, const Attitude& truth, const Frame& calibrated) const {
   if (sensor_) return sensor_->measure(calibrated).mean;
-  if (known_rms_ == 0.0) return truth;
   const auto error = [&](std::uint32_t axis) {
+    if (known_rms_ == 0.0) return 0.0;
     return known_rms_ * normal_at_step(stream_, {.step = static_cast<std::uint64_t>(exposure), .axis = axis});
   };
-  return {truth.yaw + error(0), truth.pitch + error(1), truth.roll + error(2)};
+  return {truth.yaw - origin_.yaw + error(0), truth.pitch - origin_.pitch + error(1),
+          truth.roll - origin_.roll + error(2)};
 }
 
 std::string AttitudeCorrection::description() const {
   if (!sensor_) return fmt::format("with the attitude that the spacecraft tells, {:.3g} arcsec rms off", known_rms_);
   return fmt::format(
-      "with the attitude measured in each image by {} stars, {:.3g}, {:.3g} and {:.3g} arcsec rms off in yaw, pitch "
-      "and "
+      "with the attitude measured in each image by {} stars, {:.3g}, {:.3g} and {:.3g} arcsec rms off in yaw, pitch and "
       "roll",
       sensor_->guides(), std::sqrt(error_.yaw_yaw), std::sqrt(error_.pitch_pitch), std::sqrt(error_.roll_roll));
+}
+
+const AttitudeCorrection& correction_at(std::span<const CorrectionStretch> stretches, std::int64_t exposure) {
+  const auto next = std::ranges::upper_bound(stretches, exposure, {}, &CorrectionStretch::first);
+  return *std::prev(next)->correction;
 }
 
 }  // namespace astroid

@@ -79,8 +79,10 @@ std::vector<LightCurveStar> light_curve_stars(const Scene& scene, std::span<cons
   return stars;
 }
 
+/// What the table of stars tells of the correction: nothing where the masks, and with them the responses, change.
 std::span<const AttitudeResponse> responses_of(const StreamGroup& group) {
-  return group.correction != nullptr ? group.correction->responses() : std::span<const AttitudeResponse>();
+  return group.corrections.size() == 1 ? group.corrections.front().correction->responses()
+                                       : std::span<const AttitudeResponse>();
 }
 
 /// Of the mean of all cameras.
@@ -111,7 +113,8 @@ std::unique_ptr<LightCurveWriter> open_light_curves(std::span<const StreamGroup>
                           .cycle = mission.simulation.cycle.value(),
                           .exposure_time = mission.simulation.exposure_time.value(),
                           .history = history_of(*groups.front().plan, scene),
-                          .is_corrected = groups.front().correction != nullptr,
+                          .is_corrected = !groups.front().corrections.empty(),
+                          .has_responses = groups.front().corrections.size() == 1,
                           .line_time = line_time(mission).value()};
   for (const std::size_t group : group_of) {
     header.group.push_back(static_cast<int>(group));
@@ -148,17 +151,31 @@ std::vector<Simulator> make_simulators(std::span<const StreamGroup> groups, std:
   return simulators;
 }
 
+/// Flags that hold for every exposure, whichever estimators measure it.
+std::vector<std::uint32_t> own_flags_of(const StreamGroup& group) {
+  std::vector<std::uint32_t> flags = own_flags_of(group.estimators);
+  for (const EstimatorRefresh& refresh : group.refreshes)
+    for (std::size_t t = 0; t < flags.size(); ++t) flags[t] &= refresh.estimators[t].flags;
+  return flags;
+}
+
 std::vector<GroupInput> group_inputs(std::span<const StreamGroup> groups, const std::filesystem::path& folder) {
   std::vector<GroupInput> inputs;
   inputs.reserve(groups.size());
   for (const StreamGroup& group : groups) {
     const Mission& mission = group.scene->mission();
+    std::vector<EstimatorStretch> stretches;
+    const auto add = [&](std::int64_t first, std::span<const StarEstimator> estimators) {
+      stretches.push_back(
+          {first, EstimatorSet(estimators, mission.ccd.gain, mission.ccd.bias), reference_of(estimators)});
+    };
+    add(0, group.estimators);
+    for (const EstimatorRefresh& refresh : group.refreshes) add(refresh.first, refresh.estimators);
     inputs.push_back({.mission = mission,
                       .calibration = FrameCalibration(*group.scene->layout(), calibration_model(mission)),
-                      .estimators = EstimatorSet(group.estimators, mission.ccd.gain, mission.ccd.bias),
-                      .reference = reference_of(group.estimators),
-                      .own_flags = own_flags_of(group.estimators),
-                      .correction = group.correction,
+                      .stretches = std::move(stretches),
+                      .own_flags = own_flags_of(group),
+                      .corrections = group.corrections,
                       .images = ImageFiles(*group.scene, *group.plan, folder)});
   }
   return inputs;
@@ -172,8 +189,8 @@ class Stream {
       : series_(series),
         threads_(threads),
         batch_length_(batch_length),
-        blocks_{FluxBlock(input.groups.front().estimators.size(), static_cast<std::size_t>(block_length)),
-                FluxBlock(input.groups.front().estimators.size(), static_cast<std::size_t>(block_length))},
+        blocks_{FluxBlock(input.groups.front().own_flags.size(), static_cast<std::size_t>(block_length)),
+                FluxBlock(input.groups.front().own_flags.size(), static_cast<std::size_t>(block_length))},
         lost_electrons_(input.simulators.size()) {
     workers_.reserve(static_cast<std::size_t>(threads));
     for (int i = 0; i < threads; ++i) workers_.emplace_back(input, batch_length);
@@ -266,12 +283,12 @@ StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamO
       std::max<std::int64_t>(2, static_cast<std::int64_t>(groups.front().scene->summary().exposures_per_bin));
   std::vector<std::vector<std::uint32_t>> own_flags;
   own_flags.reserve(group_of.size());
-  std::vector<std::span<const AttitudeResponse>> responses;
+  std::vector<std::span<const CorrectionStretch>> corrections;
   for (const std::size_t group : group_of) {
     own_flags.push_back(inputs[group].own_flags);
-    if (inputs[group].correction != nullptr) responses.push_back(inputs[group].correction->responses());
+    if (!inputs[group].corrections.empty()) corrections.push_back(inputs[group].corrections);
   }
-  SeriesStage series(std::move(own_flags), std::move(responses), per_bin, static_cast<std::size_t>(length),
+  SeriesStage series(std::move(own_flags), std::move(corrections), per_bin, static_cast<std::size_t>(length),
                      light_curves.get());
   Stream stream({.simulators = simulators, .group_of = group_of, .groups = inputs, .progress = options.progress},
                 series, threads, length, batch);

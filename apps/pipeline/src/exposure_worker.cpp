@@ -1,5 +1,7 @@
 #include "exposure_worker.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "astroid/photometry/background.hpp"
@@ -52,7 +54,7 @@ void ExposureWorker::run(Batch batch, FluxBlock& block, std::atomic<std::int64_t
     block.clipped()[batch.begin + i] = state_.clipped_pixels;
     std::swap(state_.frame, frames_[i]);
   }
-  if (group().estimators.size() > 0) measure(batch, block);
+  if (group().stretches.front().estimators.size() > 0) measure(batch, block);
   if (!input_.progress) return;
   const auto all = group().mission.simulation.exposures * static_cast<std::int64_t>(input_.simulators.size());
   for (std::size_t i = 0; i < batch.count; ++i) input_.progress(++done, all);
@@ -82,20 +84,33 @@ void ExposureWorker::measure(Batch batch, FluxBlock& block) {
     for (Frame& frame : frames) group().calibration.apply(frame, calibration_scratch_);
   if (group().mission.photometry.background == BackgroundMethod::kMesh)
     for (Frame& frame : frames) subtract_mesh(frame, group().mission.photometry);
-  if (group().correction != nullptr)
+  if (!group().corrections.empty())
     for (std::size_t i = 0; i < batch.count; ++i) {
+      const std::int64_t exposure = block.first() + static_cast<std::int64_t>(batch.begin + i);
       Attitude& attitude = block.attitudes()[batch.begin + i];
-      attitude =
-          group().correction->attitude(block.first() + static_cast<std::int64_t>(batch.begin + i), attitude, frames[i]);
+      attitude = correction_at(group().corrections, exposure).attitude(exposure, attitude, frames[i]);
     }
-  group().estimators.apply_batch(
+  // Frames on either side of a refresh are measured by themselves.
+  for (std::size_t begin = 0; begin < batch.count;) {
+    const std::int64_t exposure = block.first() + static_cast<std::int64_t>(batch.begin + begin);
+    const auto next = std::ranges::upper_bound(group().stretches, exposure, {}, &EstimatorStretch::first);
+    std::size_t count = batch.count - begin;
+    if (next != group().stretches.end()) count = std::min(count, static_cast<std::size_t>(next->first - exposure));
+    measure(*std::prev(next), {batch.begin + begin, count}, frames.subspan(begin, count), block);
+    begin += count;
+  }
+  clock.charge(seconds_.measure);
+}
+
+void ExposureWorker::measure(const EstimatorStretch& stretch, Batch batch, std::span<const Frame> frames,
+                             FluxBlock& block) {
+  stretch.estimators.apply_batch(
       frames, scratch_, [&](std::size_t target, std::span<const double> flux, std::span<const std::uint32_t> flags) {
-        const double reference = group().reference[target];
+        const double reference = stretch.reference[target];
         const std::span<float> series = block.deviation(target, batch.begin, batch.count);
         for (std::size_t k = 0; k < flux.size(); ++k) series[k] = static_cast<float>(flux[k] / reference - 1.0);
         note_flags(target, flags, block, batch.begin);
       });
-  clock.charge(seconds_.measure);
 }
 
 void ExposureWorker::note_flags(std::size_t target, std::span<const std::uint32_t> flags, const FluxBlock& block,

@@ -19,14 +19,20 @@
 
 namespace astroid {
 
+/// What measures the exposures from `first` on.
+struct EstimatorStretch {
+  std::int64_t first = 0;
+  EstimatorSet estimators;
+  std::vector<double> reference;  ///< e- per exposure, of each target
+};
+
 /// How the images of cameras that see the same are measured and written.
 struct GroupInput {
   const Mission& mission;
   FrameCalibration calibration;
-  EstimatorSet estimators;
-  std::vector<double> reference;                         ///< e- per exposure, of each target
-  std::vector<std::uint32_t> own_flags;                  ///< that hold for every exposure, of each target
-  std::shared_ptr<const AttitudeCorrection> correction;  ///< null: none
+  std::vector<EstimatorStretch> stretches;  ///< ascending; the first from exposure 0 on
+  std::vector<std::uint32_t> own_flags;     ///< that hold for every exposure, of each target
+  std::span<const CorrectionStretch> corrections;  ///< empty: none
   ImageFiles images;
 };
 
@@ -62,6 +68,7 @@ class ExposureWorker {
   [[nodiscard]] const GroupInput& group() const { return input_.groups[group_]; }
   void simulate(int camera, std::int64_t exposure);
   void measure(Batch batch, FluxBlock& block);
+  void measure(const EstimatorStretch& stretch, Batch batch, std::span<const Frame> frames, FluxBlock& block);
   void note_flags(std::size_t target, std::span<const std::uint32_t> flags, const FluxBlock& block, std::size_t begin);
 
   StreamInput input_;

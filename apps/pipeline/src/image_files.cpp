@@ -12,6 +12,7 @@
 #include "astroid/core/calendar.hpp"
 #include "astroid/core/detector_noise.hpp"
 #include "astroid/core/fits_writer.hpp"
+#include "astroid/core/units.hpp"
 #include "folders.hpp"
 
 namespace astroid {
@@ -19,7 +20,6 @@ namespace astroid {
 namespace {
 
 constexpr int kSixteenBits = 16;
-constexpr double kSecondsPerDay = 86400.0;
 
 std::string file_name(int camera, std::int64_t exposure) {
   return fmt::format("camera{}_{:06}", camera + 1, exposure);

@@ -59,7 +59,7 @@ std::vector<CrossMotion> AttitudeSharing::of_target(std::size_t target) const {
 }
 
 std::vector<CrossMotion> attitude_error_motion(const PreparedRun& run,
-                                               std::span<const std::shared_ptr<const AttitudeCorrection>> corrections,
+                                               std::span<const std::vector<CorrectionStretch>> corrections,
                                                std::size_t target) {
   const std::size_t count = run.groups.size();
   const auto jacobian = [&](std::size_t g) -> const AttitudeJacobian& {
@@ -67,8 +67,9 @@ std::vector<CrossMotion> attitude_error_motion(const PreparedRun& run,
   };
   std::vector<CrossMotion> motions(count * count);
   for (std::size_t g = 0; g < count; ++g) {
-    const AttitudeCovariance& error = corrections[g]->error();
-    if (corrections[g]->is_measured()) {
+    const AttitudeCorrection& correction = *corrections[g].front().correction;
+    const AttitudeCovariance& error = correction.error();
+    if (correction.is_measured()) {
       const MotionCovariance own = motion_covariance(jacobian(g), error);
       motions[g * count + g].exposure = {.xx = own.sxx, .xy = own.sxy, .yx = own.sxy, .yy = own.syy};
       continue;

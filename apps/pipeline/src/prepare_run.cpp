@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -19,6 +20,8 @@
 #include "astroid/pipeline/ground.hpp"
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run.hpp"
+#include "astroid/sim/aberration.hpp"
+#include "astroid/sim/attitude_trend.hpp"
 #include "astroid/sim/smearing.hpp"
 
 namespace astroid {
@@ -181,16 +184,77 @@ Ground perfect_ground(const Scene& scene) {
   return perfect_ground(scene, scene.targets());
 }
 
+namespace {
+
+/// Exposures between two refreshes of the masks; 0 where they are made once, or nothing leads the stars away.
+std::int64_t exposures_per_refresh(const Scene& scene) {
+  const Mission& mission = scene.mission();
+  const double refresh = mission.photometry.mask_refresh.value();
+  if (!(refresh > 0.0) || (scene.attitude_trend().is_still() && !mission.satellite.aberration)) return 0;
+  return std::max<std::int64_t>(1, std::llround(refresh / mission.simulation.cycle.value()));
+}
+
+/// The attitude of an exposure but for jitter.
+Attitude trend_at(const Scene& scene, std::int64_t exposure) {
+  const double start = static_cast<double>(exposure) * scene.mission().simulation.cycle.value();
+  return scene.attitude_trend().at(scene.mid_time(exposure).value(), start);
+}
+
+/// The stars where they are in an exposure, but for jitter.
+std::vector<FieldStar> stars_at(const Scene& scene, std::int64_t exposure) {
+  const SimulationSettings& simulation = scene.mission().simulation;
+  const Seconds time = scene.mid_time(exposure);
+  const Attitude trend = trend_at(scene, exposure);
+  const Velocity velocity =
+      scene.mission().satellite.aberration ? velocity_since_start(simulation, time) : Velocity{};
+  std::vector<FieldStar> stars = field_stars(scene);
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    const SceneStar& star = scene.stars()[i];
+    const PixelShift drift = displacement(star.motion, trend);
+    const PixelShift aberration = star.aberration.displacement(velocity);
+    stars[i].position.x += drift.dx + aberration.dx;
+    stars[i].position.y += drift.dy + aberration.dy;
+  }
+  return stars;
+}
+
+}  // namespace
+
 GroundSegment perfect_ground_segment(const PreparedRun& run) {
   GroundSegment segment;
   for (const PreparedGroup& group : run.groups) {
-    segment.grounds.push_back(perfect_ground(*group.scene, group.targets));
-    segment.estimators.push_back(
-        build_estimators(*group.scene->layout(), segment.grounds.back().model, group.scene->mission().photometry));
-    const bool corrects = group.scene->mission().photometry.jitter_correction != JitterCorrection::kNone;
-    segment.corrections.push_back(corrects ? std::make_shared<const AttitudeCorrection>(
-                                                 *group.scene, segment.grounds.back().model, segment.estimators.back())
-                                           : nullptr);
+    const Scene& scene = *group.scene;
+    segment.grounds.push_back(perfect_ground(scene, group.targets));
+    Ground& ground = segment.grounds.back();
+    segment.estimators.emplace_back();
+    segment.refreshes.emplace_back();
+    segment.corrections.emplace_back();
+    const PhotometrySettings& photometry = scene.mission().photometry;
+    const auto build = [&](std::int64_t first, const Attitude& origin) {
+      std::vector<StarEstimator> estimators = build_estimators(*scene.layout(), ground.model, photometry);
+      if (photometry.jitter_correction != JitterCorrection::kNone)
+        segment.corrections.back().push_back(
+            {first, std::make_shared<const AttitudeCorrection>(scene, ground.model, estimators, origin)});
+      if (first > 0)
+        segment.refreshes.back().push_back({first, std::move(estimators)});
+      else
+        segment.estimators.back() = std::move(estimators);
+    };
+    const std::int64_t exposures = scene.mission().simulation.exposures;
+    const std::int64_t each = exposures_per_refresh(scene);
+    if (each == 0) {
+      build(0, {});
+      continue;
+    }
+    // From the last stretch to the first, whose places the ground then keeps.
+    for (std::int64_t first = (exposures - 1) / each * each; first >= 0; first -= each) {
+      const std::int64_t middle = first + (std::min(first + each, exposures) - first) / 2;
+      ground.stars = stars_at(scene, middle);
+      ground.model.stars = ground.stars;
+      build(first, trend_at(scene, middle));
+    }
+    std::ranges::reverse(segment.refreshes.back());
+    std::ranges::reverse(segment.corrections.back());
   }
   return segment;
 }
@@ -200,11 +264,12 @@ std::vector<StreamGroup> stream_groups(const PreparedRun& run, const GroundSegme
   for (std::size_t g = 0; g < run.groups.size(); ++g) {
     const std::span<const StarEstimator> estimators =
         ground.estimators.empty() ? std::span<const StarEstimator>() : std::span(ground.estimators[g]);
-    groups.push_back({.scene = run.groups[g].scene,
-                      .plan = run.groups[g].plan,
-                      .estimators = estimators,
-                      .share = run.groups[g].share,
-                      .correction = ground.corrections.empty() ? nullptr : ground.corrections[g]});
+    const std::span<const EstimatorRefresh> refreshes =
+        ground.refreshes.empty() ? std::span<const EstimatorRefresh>() : std::span(ground.refreshes[g]);
+    const std::span<const CorrectionStretch> corrections =
+        ground.corrections.empty() ? std::span<const CorrectionStretch>() : std::span(ground.corrections[g]);
+    groups.push_back(
+        {run.groups[g].scene, run.groups[g].plan, estimators, run.groups[g].share, refreshes, corrections});
   }
   return groups;
 }

@@ -117,8 +117,8 @@ std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path&
 
 /// What jitter correction did, and what it brought.
 std::vector<std::string> jitter_correction_notes(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
-  const std::shared_ptr<const AttitudeCorrection>& correction = run.ground.corrections.front();
-  if (correction == nullptr) return {};
+  if (run.ground.corrections.front().empty()) return {};
+  const AttitudeCorrection& correction = *run.ground.corrections.front().front().correction;
   std::vector<double> before;
   std::vector<double> after;
   std::vector<double> brightest;
@@ -132,7 +132,7 @@ std::vector<std::string> jitter_correction_notes(const MeasuredRun& run, std::sp
       before.push_back(t.nsr_1h_uncorrected.value);
       after.push_back(t.nsr_1h_measured.value);
     }
-  std::string text = "motion was taken out of the light curves " + correction->description();
+  std::string text = "motion was taken out of the light curves " + correction.description();
   if (!before.empty())
     text += fmt::format(
         "; the noise in {:g} s of the {} brightest unsaturated targets (to mag {:.2f}) fell from {:.4g} to "
@@ -173,7 +173,7 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
     shares.push_back(group.share);
   }
   const AttitudeSharing attitude(run.prepared);
-  const bool is_corrected = run.ground.corrections.front() != nullptr;
+  const bool is_corrected = !run.ground.corrections.front().empty();
   std::vector<TargetMetrics> targets;
   for (std::size_t t = 0; t < groups.front().targets.size(); ++t) {
     std::vector<GroupView> views;
@@ -187,7 +187,7 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
     if (is_corrected) {
       const MotionNoise error =
           mean_motion_noise(views, attitude_error_motion(run.prepared, run.ground.corrections, t), setup);
-      motion = after_correction(motion, error, run.ground.corrections.front()->is_measured(), setup.exposures_per_bin);
+      motion = after_correction(motion, error, run.ground.corrections.front().front().correction->is_measured(), setup.exposures_per_bin);
     }
     const PredictedNoise noise = predict_mean_noise(estimator, motion, setup);
     TargetMetrics target = predict_mean_target(mean_truth(stars, shares), estimator, noise, setup);

@@ -14,16 +14,16 @@ constexpr std::size_t kStarsPerTask = 64;  // so that their series in a block fi
 }  // namespace
 
 SeriesStage::SeriesStage(std::vector<std::vector<std::uint32_t>> own_flags,
-                         std::vector<std::span<const AttitudeResponse>> responses, std::int64_t exposures_per_bin,
+                         std::vector<std::span<const CorrectionStretch>> corrections, std::int64_t exposures_per_bin,
                          std::size_t longest_block, LightCurveWriter* light_curves)
     : own_flags_(std::move(own_flags)),
-      responses_(std::move(responses)),
+      corrections_(std::move(corrections)),
       cameras_(own_flags_.size()),
       targets_(own_flags_.front().size()),
       light_curves_(light_curves),
       longest_block_(longest_block),
       result_(make_mean(targets_, exposures_per_bin)),
-      measured_(make_mean(responses_.empty() ? 0 : targets_, exposures_per_bin)),
+      measured_(make_mean(corrections_.empty() ? 0 : targets_, exposures_per_bin)),
       flags_(targets_, 0),
       flagged_(targets_, 0) {}
 
@@ -51,7 +51,7 @@ void SeriesStage::run(std::size_t task, const FluxBlock& block, StreamTimings& s
     return std::span(series).subspan((target - begin) * block.count(), block.count());
   };
   for (std::size_t target = begin; target < end; ++target) {
-    if (!responses_.empty()) {
+    if (!corrections_.empty()) {
       add(measured_, target, block, series_of(target));
       correct(target, block, series_of(target));
     }
@@ -64,9 +64,12 @@ void SeriesStage::run(std::size_t task, const FluxBlock& block, StreamTimings& s
 }
 
 void SeriesStage::correct(std::size_t target, const FluxBlock& block, std::span<float> series) const {
-  const AttitudeResponse& response = responses_[static_cast<std::size_t>(block.camera())][target];
-  for (std::size_t k = 0; k < series.size(); ++k)
-    series[k] = static_cast<float>(without_attitude(static_cast<double>(series[k]), response, block.attitudes()[k]));
+  const std::span<const CorrectionStretch> stretches = corrections_[static_cast<std::size_t>(block.camera())];
+  for (std::size_t k = 0; k < series.size(); ++k) {
+    const AttitudeCorrection& correction = correction_at(stretches, block.first() + static_cast<std::int64_t>(k));
+    series[k] = static_cast<float>(
+        without_attitude(static_cast<double>(series[k]), correction.responses()[target], block.attitudes()[k]));
+  }
 }
 
 void SeriesStage::add(Mean& mean, std::size_t target, const FluxBlock& block, std::span<const float> series) const {
@@ -85,7 +88,7 @@ void SeriesStage::add(Mean& mean, std::size_t target, const FluxBlock& block, st
 }
 
 std::vector<SeriesSummary> SeriesStage::measured_summaries() const {
-  return responses_.empty() ? std::vector<SeriesSummary>() : measured_.statistics.summaries();
+  return corrections_.empty() ? std::vector<SeriesSummary>() : measured_.statistics.summaries();
 }
 
 void SeriesStage::end(const FluxBlock& block, std::vector<LightCurveFlag>& flags) {
@@ -103,7 +106,7 @@ void SeriesStage::end(const FluxBlock& block, std::vector<LightCurveFlag>& flags
   }
   if (light_curves_ == nullptr) return;
   light_curves_->end_block();
-  if (!responses_.empty()) light_curves_->add_attitudes(block.camera() + 1, block.attitudes());
+  if (!corrections_.empty()) light_curves_->add_attitudes(block.camera() + 1, block.attitudes());
   light_curves_->add_flags(flags);
 }
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "astroid/analysis/nsr_accumulator.hpp"
-#include "astroid/photometry/attitude_response.hpp"
 #include "astroid/photometry/light_curves.hpp"
+#include "astroid/pipeline/attitude_correction.hpp"
 #include "astroid/pipeline/exposure_stream.hpp"
 #include "flux_block.hpp"
 
@@ -20,10 +20,10 @@ namespace astroid {
 class SeriesStage {
  public:
   /// @param own_flags     that hold for every exposure: [camera][target].
-  /// @param responses     of fluxes to the attitude, which is taken out: [camera][target]; empty: nothing is.
+  /// @param corrections   for jitter, of each camera; empty: none.
   /// @param light_curves  the file; null: none.
   SeriesStage(std::vector<std::vector<std::uint32_t>> own_flags,
-              std::vector<std::span<const AttitudeResponse>> responses, std::int64_t exposures_per_bin,
+              std::vector<std::span<const CorrectionStretch>> corrections, std::int64_t exposures_per_bin,
               std::size_t longest_block, LightCurveWriter* light_curves);
 
   /// Begins a block; its tasks follow, in any order and several at a time.
@@ -53,7 +53,7 @@ class SeriesStage {
   void correct(std::size_t target, const FluxBlock& block, std::span<float> series) const;
 
   std::vector<std::vector<std::uint32_t>> own_flags_;
-  std::vector<std::span<const AttitudeResponse>> responses_;
+  std::vector<std::span<const CorrectionStretch>> corrections_;
   std::size_t cameras_;
   std::size_t targets_;
   LightCurveWriter* light_curves_;

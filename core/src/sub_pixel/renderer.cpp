@@ -29,16 +29,41 @@ constexpr double kLostShare = 1e-3;
 constexpr std::array<int, 26> kSubPixels = {1,  2,  3,  4,  5,  6,  7,  8,  10, 12, 14, 16,  18,
                                             20, 24, 28, 32, 36, 40, 48, 56, 64, 80, 96, 112, 128};
 
-int choose_sub_pixels(const PsfSpectrum& psf, const SubPixelSettings& settings) {
+/// Of the blend, in units of a star's flux.
+double error_beyond(const FieldSpectrum& psf, double band) {
+  double worst = 0.0;
+  for (const auto& member : psf.members) worst = std::max(worst, member->error_beyond(band));
+  return psf.amplification * worst;
+}
+
+double reach_of(const FieldSpectrum& psf, double lost) {
+  double widest = 0.0;
+  for (const auto& member : psf.members) widest = std::max(widest, member->reach(lost / psf.amplification));
+  return widest;
+}
+
+std::string describe(const FieldSpectrum& psf) {
+  const std::string first = psf.members.front()->description();
+  return psf.members.size() == 1 ? first
+                                 : fmt::format("{} tables over the field; the first: {}", psf.members.size(), first);
+}
+
+int choose_sub_pixels(const FieldSpectrum& psf, const SubPixelSettings& settings) {
   if (settings.sub_pixels > 0) return settings.sub_pixels;
-  for (const int n : kSubPixels)
-    if (psf.error_beyond(kBandPerNode * n) <= (1.0 - kLostShare) * settings.accuracy) return n;
+  const double allowed = (1.0 - kLostShare) * settings.accuracy;
+  const auto suffices = [&](const PsfSpectrum& member, int n) {
+    return psf.amplification * member.error_beyond(kBandPerNode * n) <= allowed;
+  };
+  auto n = kSubPixels.begin();
+  for (const auto& member : psf.members)
+    while (n != kSubPixels.end() && !suffices(*member, *n)) ++n;
+  if (n != kSubPixels.end()) return *n;
   throw InputError(Problem{
       .parameter = "Simulation/Renderer",
       .value = "subpixel",
       .expected = "analytic or prf, or a wider PSF, or a larger error in Simulation/Accuracy",
       .message = fmt::format("{} needs more than {} sub-pixels per pixel for an error of {:.2g} of a star's flux",
-                             psf.description(), kSubPixels.back(), settings.accuracy)});
+                             describe(psf), kSubPixels.back(), settings.accuracy)});
 }
 
 std::vector<double> frequencies(long first, long last, double period) {
@@ -62,14 +87,14 @@ SubPixelRenderer::Workspace& SubPixelRenderer::Workspace::operator=(Workspace&&)
 SubPixelRenderer::Workspace::~Workspace() = default;
 
 struct SubPixelRenderer::Design {
-  Design(std::shared_ptr<const PsfSpectrum> spectrum, Rectangle detector, const SubPixelSettings& settings)
-      : psf(std::move(spectrum)),
-        sub_pixels(choose_sub_pixels(*psf, settings)),
+  Design(FieldSpectrum field, Rectangle detector, const SubPixelSettings& settings)
+      : psf(std::move(field)),
+        sub_pixels(choose_sub_pixels(psf, settings)),
         cells(settings.cells),
         band(kBandPerNode * sub_pixels),
         lost(std::clamp(kLostShare * settings.accuracy, 1e-16, 1e-6)),
-        error(psf->error_beyond(band) + lost + kDepositError),
-        reach(psf->reach(lost)),
+        error(error_beyond(psf, band) + lost + kDepositError),
+        reach(reach_of(psf, lost)),
         grid(detail::make_tile_grid(detector, {.sub_pixels = sub_pixels,
                                                .cells = cells,
                                                .margin = static_cast<int>(std::ceil(reach)) + 1,
@@ -93,11 +118,13 @@ struct SubPixelRenderer::Design {
 
   void make_transfer(const PixelResponse& response);
   void deposit(PixelPosition star, double electrons, std::span<double> map) const;
-  void deposit(const Rectangle& tile, std::span<const StarLight> stars, std::span<double> map) const;
-  void fold(std::span<const Complex> spectrum, std::span<Complex> folded) const;
+  /// @param shares  of each star's light, `stride` apart; empty: all of it
+  void deposit(const Rectangle& tile, std::span<const StarLight> stars, std::span<const double> shares,
+               std::size_t stride, std::span<double> map) const;
+  void fold(std::span<const Complex> spectrum, std::span<const Complex> factors, std::span<Complex> folded) const;
   void convolve(const Rectangle& tile, std::span<const StarLight> stars, Workspace::Maps& maps) const;
 
-  std::shared_ptr<const PsfSpectrum> psf;
+  FieldSpectrum psf;
   int sub_pixels;
   int cells;
   double band;
@@ -108,9 +135,9 @@ struct SubPixelRenderer::Design {
   detail::DepositKernel kernel;
   detail::FourierTransform map_transform;
   detail::FourierTransform cell_transform;
-  std::vector<double> kx;  // 0 … band
-  std::vector<double> ky;  // -band … band
-  std::vector<Complex> transfer;
+  std::vector<double> kx;                      // 0 … band
+  std::vector<double> ky;                      // -band … band
+  std::vector<std::vector<Complex>> transfer;  // of each member of the PSF
 };
 
 // What the spectrum of the map is multiplied by: the PSF, the integral over the cells (or the pixel and its response,
@@ -121,9 +148,7 @@ void SubPixelRenderer::Design::make_transfer(const PixelResponse& response) {
   const long last_y = last_frequency(grid.period_y);
   kx = frequencies(0, last_x, grid.period_x);
   ky = frequencies(-last_y, last_y, grid.period_y);
-  transfer.resize(kx.size() * ky.size());
-  psf->sample(kx, ky, transfer);
-  std::vector<Complex> integral(transfer.size());
+  std::vector<Complex> integral(kx.size() * ky.size());
   if (cells == 1) {
     sample_response(response, kx, ky, integral);
     for (Complex& value : integral) value = std::conj(value);
@@ -147,8 +172,12 @@ void SubPixelRenderer::Design::make_transfer(const PixelResponse& response) {
   std::ranges::transform(kx, spread_x.begin(), spread);
   for (std::size_t q = 0; q < ky.size(); ++q) {
     const double spread_y = spread(ky[q]) * periods;
-    for (std::size_t i = 0; i < kx.size(); ++i)
-      transfer[q * kx.size() + i] *= integral[q * kx.size() + i] / (spread_x[i] * spread_y);
+    for (std::size_t i = 0; i < kx.size(); ++i) integral[q * kx.size() + i] /= spread_x[i] * spread_y;
+  }
+  for (const auto& member : psf.members) {
+    std::vector<Complex>& factors = transfer.emplace_back(integral.size());
+    member->sample(kx, ky, factors);
+    for (std::size_t i = 0; i < factors.size(); ++i) factors[i] *= integral[i];
   }
 }
 
@@ -171,6 +200,7 @@ void SubPixelRenderer::Design::deposit(PixelPosition star, double electrons, std
 }
 
 void SubPixelRenderer::Design::deposit(const Rectangle& tile, std::span<const StarLight> stars,
+                                       std::span<const double> shares, std::size_t stride,
                                        std::span<double> map) const {
   const auto inside = [this](double x, int first, int end) {
     return x >= first - 0.5 - reach && x < end - 0.5 + reach;
@@ -181,20 +211,22 @@ void SubPixelRenderer::Design::deposit(const Rectangle& tile, std::span<const St
     deposit({(star.x - (tile.x0 - grid.margin)) * sub_pixels, (star.y - (tile.y0 - grid.margin)) * sub_pixels},
             electrons, map);
   };
-  for (const StarLight& star : stars) {
+  for (std::size_t i = 0; i < stars.size(); ++i) {
+    const StarLight& star = stars[i];
+    const double electrons = shares.empty() ? star.electrons : star.electrons * shares[i * stride];
     if (!star.broadened) {
-      add(star.centre, star.electrons);
+      add(star.centre, electrons);
       continue;
     }
     for (const detail::MotionNode& node : detail::motion_nodes(star.motion))
-      add({star.centre.x + node.shift.dx, star.centre.y + node.shift.dy}, star.electrons * node.weight);
+      add({star.centre.x + node.shift.dx, star.centre.y + node.shift.dy}, electrons * node.weight);
   }
 }
 
 // From the band of the map's spectrum to the spectrum of the cells: sampling every cell's centre adds up frequencies
 // that differ by the cells' own sampling frequency.
-void SubPixelRenderer::Design::fold(std::span<const Complex> spectrum, std::span<Complex> folded) const {
-  std::ranges::fill(folded, Complex{});
+void SubPixelRenderer::Design::fold(std::span<const Complex> spectrum, std::span<const Complex> factors,
+                                    std::span<Complex> folded) const {
   const auto nx = static_cast<long>(cell_transform.nx());
   const auto ny = static_cast<long>(cell_transform.ny());
   const auto map_ny = static_cast<long>(map_transform.ny());
@@ -205,7 +237,7 @@ void SubPixelRenderer::Design::fold(std::span<const Complex> spectrum, std::span
   for (std::size_t q = 0; q < ky.size(); ++q) {
     const long j = static_cast<long>(q) - last_y;
     const Complex* from = &spectrum[static_cast<std::size_t>(wrap(j, map_ny)) * map_row];
-    const Complex* factor = &transfer[q * kx.size()];
+    const Complex* factor = &factors[q * kx.size()];
     Complex* row = &folded[static_cast<std::size_t>(wrap(j, ny) * row_length)];
     Complex* mirrored = &folded[static_cast<std::size_t>(wrap(-j, ny) * row_length)];
     for (std::size_t i = 0; i < kx.size(); ++i) {
@@ -225,10 +257,20 @@ void SubPixelRenderer::Design::convolve(const Rectangle& tile, std::span<const S
   maps.spectrum.resize(map_transform.complex_size());
   maps.cell_spectrum.resize(cell_transform.complex_size());
   maps.cells.resize(cell_transform.real_size());
-  std::ranges::fill(maps.map.span(), 0.0);
-  deposit(tile, stars, maps.map.span());
-  map_transform.forward(maps.map, maps.spectrum);
-  fold(maps.spectrum.span(), maps.cell_spectrum.span());
+  // Every member of a varying PSF has a map of its own, with its share of each star.
+  const std::size_t members = psf.members.size();
+  std::vector<double> shares(members > 1 ? members * stars.size() : 0);
+  if (members > 1)
+    for (std::size_t i = 0; i < stars.size(); ++i)
+      psf.weights(stars[i].centre, std::span(shares).subspan(i * members, members));
+  std::ranges::fill(maps.cell_spectrum.span(), Complex{});
+  for (std::size_t k = 0; k < members; ++k) {
+    std::ranges::fill(maps.map.span(), 0.0);
+    deposit(tile, stars, members > 1 ? std::span<const double>(shares).subspan(std::min(k, shares.size())) : shares,
+            members, maps.map.span());
+    map_transform.forward(maps.map, maps.spectrum);
+    fold(maps.spectrum.span(), transfer[k], maps.cell_spectrum.span());
+  }
   cell_transform.backward(maps.cell_spectrum, maps.cells);
 }
 
@@ -244,6 +286,9 @@ NegativeLight silence(std::span<double> light, double limit) {
 
 SubPixelRenderer::SubPixelRenderer(std::shared_ptr<const PsfSpectrum> psf, Rectangle detector,
                                    const SubPixelSettings& settings)
+    : SubPixelRenderer(FieldSpectrum{.members = {std::move(psf)}, .weights = {}}, detector, settings) {}
+
+SubPixelRenderer::SubPixelRenderer(FieldSpectrum psf, Rectangle detector, const SubPixelSettings& settings)
     : design_(std::make_unique<const Design>(std::move(psf), detector, settings)) {}
 
 SubPixelRenderer::~SubPixelRenderer() = default;
@@ -295,6 +340,9 @@ double SubPixelRenderer::predicted_error() const {
 double SubPixelRenderer::workspace_bytes() const {
   return design_->grid.workspace_bytes;
 }
+std::size_t SubPixelRenderer::maps() const {
+  return design_->psf.members.size();
+}
 std::size_t SubPixelRenderer::map_size() const {
   return design_->map_transform.real_size();
 }
@@ -304,8 +352,7 @@ std::string SubPixelRenderer::description() const {
   return fmt::format(
       "{} on a map of {} x {} sub-pixels per pixel, convolved up to {:.3g} cycles/px in {} tiles of {} x {} px; "
       "flux in any square within {:.2g} of the star's",
-      d.psf->description(), d.sub_pixels, d.sub_pixels, d.band, d.grid.tiles.size(), d.grid.tile_x, d.grid.tile_y,
-      d.error);
+      describe(d.psf), d.sub_pixels, d.sub_pixels, d.band, d.grid.tiles.size(), d.grid.tile_x, d.grid.tile_y, d.error);
 }
 
 }  // namespace astroid

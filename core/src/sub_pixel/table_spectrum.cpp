@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "astroid/core/math.hpp"
 #include "astroid/core/psf_spectrum.hpp"
 #include "astroid/core/units.hpp"
 #include "flux_spline.hpp"
+#include "sub_pixel/band_error.hpp"
 
 namespace astroid {
 
@@ -77,6 +78,8 @@ class TableSpectrum final : public PsfSpectrum {
       for (std::size_t i = 0; i < nx_; ++i)
         differences_[j * nx_ + i] =
             (c[(j + 1) * stride + i + 1] - c[(j + 1) * stride + i]) - (c[j * stride + i + 1] - c[j * stride + i]);
+    band_error_.emplace(spline_.lower(), spline_.upper(),
+                        [this](PixelPosition lower, PixelPosition upper) { return spline_.flux(lower, upper); });
   }
 
   void sample(std::span<const double> kx, std::span<const double> ky, std::span<Complex> values) const override {
@@ -126,7 +129,7 @@ class TableSpectrum final : public PsfSpectrum {
     return std::max({-lower.x, -lower.y, upper.x, upper.y});
   }
 
-  [[nodiscard]] double error_beyond(double band) const override;
+  [[nodiscard]] double error_beyond(double band) const override { return band_error_->of(*this, band); }
 
   [[nodiscard]] std::string description() const override {
     return fmt::format("table of {} x {} samples, {} per px", spline_.nx(), spline_.ny(), spline_.samples_per_pixel());
@@ -137,64 +140,8 @@ class TableSpectrum final : public PsfSpectrum {
   std::size_t nx_;  // differences along x
   std::size_t ny_;
   std::vector<double> differences_;
+  std::optional<detail::BandError> band_error_;
 };
-
-// The flux in squares by the frequencies within the band, against the exact one.
-double TableSpectrum::error_beyond(double band) const {
-  constexpr std::array<double, 4> kWidths = {1.0, 2.0, 3.0, 5.0};  // px
-  constexpr std::size_t kPhases = 8;
-  const PixelPosition lower = spline_.lower();
-  const PixelPosition upper = spline_.upper();
-  // One period holds the table and a square at each border, so that no light of the next star gets in.
-  const double period = std::ceil(std::max(upper.x - lower.x, upper.y - lower.y)) + kWidths.back() + 2.0;
-  // Sums over frequencies up to `most` reach half a step farther: no farther than the band.
-  const auto most = static_cast<std::size_t>(std::max(0.0, std::floor(band * period - 0.5)));
-  std::vector<double> kx(most + 1);
-  std::vector<double> ky(2 * most + 1);
-  for (std::size_t i = 0; i <= most; ++i) kx[i] = static_cast<double>(i) / period;
-  for (std::size_t i = 0; i <= 2 * most; ++i) ky[i] = (static_cast<double>(i) - static_cast<double>(most)) / period;
-  std::vector<Complex> h(kx.size() * ky.size());
-  sample(kx, ky, h);
-  const auto square = [](double k, double width) { return k == 0.0 ? width : det::sin(kPi * k * width) / (kPi * k); };
-  // Squares about the star, and at the borders of the table, where its light may end in a step.
-  const std::array<double, 3> columns = {0.0, lower.x, upper.x};
-  const std::array<double, 3> lines = {0.0, lower.y, upper.y};
-  // The first is worst where light ends in a step: on the edge of a pixel. The others are no multiples of anything.
-  const auto phase_of = [](std::size_t phase) {
-    constexpr double kGolden = 0.61803398874989484820;
-    const double turns = kGolden * static_cast<double>(phase);
-    return turns - std::floor(turns) - 0.5;
-  };
-  std::vector<Complex> ramps;
-  for (std::size_t r = 0; r < kPhases * lines.size(); ++r)
-    for (const double k : ky) ramps.push_back(turn(k * (lines[r % lines.size()] + phase_of(r / lines.size()))));
-  double worst = 0.0;
-  std::vector<Complex> rows(ky.size());
-  std::vector<Complex> weight(kx.size());
-  for (std::size_t p = 0; p < kPhases * columns.size(); ++p) {
-    const double x = columns[p % columns.size()] + phase_of(p / columns.size());  // of the square's centre
-    for (const double width : kWidths) {
-      std::vector<double> square_y(ky.size());
-      std::ranges::transform(ky, square_y.begin(), [&](double k) { return square(k, width); });
-      for (std::size_t i = 0; i < kx.size(); ++i)
-        weight[i] = (i == 0 ? 1.0 : 2.0) * square(kx[i], width) * turn(kx[i] * x);
-      // The half plane kx < 0 mirrors the other: twice the real part of the sum over ky.
-      for (std::size_t q = 0; q < ky.size(); ++q)
-        rows[q] = std::inner_product(weight.begin(), weight.end(),
-                                     h.begin() + static_cast<std::ptrdiff_t>(q * kx.size()), Complex{});
-      for (std::size_t r = 0; r < kPhases * lines.size(); ++r) {
-        const double y = lines[r % lines.size()] + phase_of(r / lines.size());
-        const Complex* ramp = &ramps[r * ky.size()];
-        double flux = 0.0;
-        for (std::size_t q = 0; q < ky.size(); ++q) flux += (rows[q] * ramp[q]).real() * square_y[q];
-        flux /= period * period;
-        const double exact = spline_.flux({x - 0.5 * width, y - 0.5 * width}, {x + 0.5 * width, y + 0.5 * width});
-        worst = std::max(worst, std::abs(flux - exact));
-      }
-    }
-  }
-  return worst;
-}
 
 }  // namespace
 

@@ -6,6 +6,7 @@
 #include <hwy/foreach_target.h>  // must come before highway.h
 #include <hwy/highway.h>
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -88,12 +89,13 @@ void prf_kernel(const PrfStamp& stamp, const StampPixels& pixels) {
 #pragma GCC unroll 16
       for (std::size_t k = 1; k < detail::kPrfTaps; ++k)
         sum = hn::Add(sum, hn::Mul(hn::Set(d, stamp.weights[k]), hn::LoadU(d, stamp.images[k] + from + i)));
-      hn::StoreU(hn::Add(hn::LoadU(d, row + i), hn::Mul(electrons, sum)), d, row + i);
+      const Double light = hn::Mul(electrons, hn::Max(sum, hn::Zero(d)));
+      hn::StoreU(hn::Add(hn::LoadU(d, row + i), light), d, row + i);
     }
     for (; i < pixels.nx; ++i) {
       double sum = stamp.weights[0] * stamp.images[0][from + i];
       for (std::size_t k = 1; k < detail::kPrfTaps; ++k) sum = sum + stamp.weights[k] * stamp.images[k][from + i];
-      row[i] = row[i] + stamp.electrons * sum;
+      row[i] = row[i] + stamp.electrons * std::max(sum, 0.0);
     }
   }
 }
@@ -148,7 +150,7 @@ void detail::reference::add_prf_stamp(const PrfStamp& stamp, const StampPixels& 
       double sum = stamp.weights[0] * stamp.images[0][at];
       for (std::size_t k = 1; k < kPrfTaps; ++k) sum = sum + stamp.weights[k] * stamp.images[k][at];
       double& pixel = pixels.first[j * pixels.stride + i];
-      pixel = pixel + stamp.electrons * sum;
+      pixel = pixel + stamp.electrons * std::max(sum, 0.0);
     }
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "astroid/core/units.hpp"
 #include "field/place.hpp"
 
 namespace astroid::detail {
@@ -42,7 +43,6 @@ PsfReach::PsfReach(const PixelPsf& psf, PixelPosition centre, int limit) {
   for (const double s : squares) total += s;
   noise_pixels_ = total > 0.0 ? 1.0 / total : 1.0;
   // A Gaussian has 4 pi sigma² noise pixels (King1983), a pixel's own width of 1/12 px² included in sigma².
-  constexpr double kFwhmPerSigma = 2.3548200450309493;
   constexpr double kPixelVariance = 1.0 / 12.0;
   fwhm_ = kFwhmPerSigma * std::sqrt(std::max(noise_pixels_ / (4.0 * kPi) - kPixelVariance, kPixelVariance));
   constexpr double kCoreShare = 0.999;

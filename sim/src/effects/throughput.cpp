@@ -14,7 +14,7 @@ namespace {
 constexpr double kEpochShare = 0.1;  ///< of the tolerance, that the change within an epoch may take
 }  // namespace
 
-EffectNeed Throughput::is_needed(const SceneSummary& scene) const {
+EffectNeed ThroughputEffect::is_needed(const SceneSummary& scene) const {
   const Mission& mission = *scene.mission;
   const SimulationSettings& simulation = mission.simulation;
   const Seconds length = static_cast<double>(simulation.exposures) * simulation.cycle;
@@ -35,10 +35,11 @@ EffectNeed Throughput::is_needed(const SceneSummary& scene) const {
   return need;
 }
 
-void Throughput::set_conditions(const Scene& scene, Seconds time, Conditions& conditions) const {
+void ThroughputEffect::set_conditions(const Scene& scene, Seconds time, Conditions& conditions) const {
   conditions.throughput *= throughput_at(scene.mission(), time);
 }
 
-void Throughput::apply(ExposureState& /*state*/, const EffectContext& /*context*/, const Strip& /*strip*/) const {}
+void ThroughputEffect::apply(ExposureState& /*state*/, const EffectContext& /*context*/, const Strip& /*strip*/) const {
+}
 
 }  // namespace astroid

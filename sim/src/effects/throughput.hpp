@@ -8,7 +8,7 @@ namespace astroid {
 /// Sets the throughput of the exposure's conditions, by which stars, ghosts and sky are multiplied.
 ///
 /// Linear from the beginning to the end of life. An epoch shares the value at its middle.
-class Throughput final : public Effect {
+class ThroughputEffect final : public Effect {
  public:
   static constexpr EffectSpec kSpec{"throughput",       StreamId{40}, EffectLevel::kOptics, 0, 0, 0,
                                     RandomScope::kNone, "Jannsen2024"};

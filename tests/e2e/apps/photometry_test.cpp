@@ -63,7 +63,8 @@ TEST_F(PhotometryOfImages, OfSeveralImagesWritesATableForEach) {
       folder_.path());
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.err, IsEmpty());
-  EXPECT_EQ(test::lines_of(run.out).size(), 2U);
+  // For each image the method and why, and what was measured.
+  EXPECT_EQ(test::lines_of(run.out).size(), 4U);
   for (const char* name : {"sources_camera1_000000.csv", "sources_camera1_000003.csv"})
     EXPECT_EQ(test::read_csv(folder_.path() / name).rows(), 25U) << name;
 }
@@ -96,6 +97,32 @@ TEST_F(PhotometryOfImages, IsComparedWithTheTruthById) {
     const double expected = -2.5 * std::log10(matched.numbers("flux")[i] / matched.numbers("electrons")[i]);
     EXPECT_NEAR(matched.numbers("delta_mag")[i], expected, 1e-12);
   }
+}
+
+TEST_F(PhotometryOfImages, WithoutACatalogueFindsStarsAndSaysWhatItDid) {
+  const std::string image = "run/images/camera1_000000.fits";
+  const test::ProgramResult circles =
+      test::run_astroid({"photometry", image, "-o", "found.csv", "--residual", "residual.fits"}, folder_.path());
+  ASSERT_EQ(circles.exit_code, 0) << circles.err;
+  EXPECT_THAT(circles.out, HasSubstr("method aperture: no PSF was given"));
+  EXPECT_GE(test::read_csv(folder_.path() / "found.csv").rows(), 20U);
+  EXPECT_THAT(test::read_file(folder_.path() / "found.csv.json"), HasSubstr("\"method\": \"aperture\""));
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "residual.fits"));
+  const test::ProgramResult fitted = test::run_astroid(
+      {"photometry", image, "--psf", "gaussian:0.6", "--radius", "2", "--background", "mesh", "-o", "fitted.fits"},
+      folder_.path());
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.err;
+  EXPECT_THAT(fitted.err, HasSubstr("--radius was ignored"));
+  EXPECT_THAT(fitted.err, HasSubstr("--background was ignored"));
+  EXPECT_THAT(test::read_file(folder_.path() / "fitted.fits"), HasSubstr("METHOD  = 'psf"));
+}
+
+TEST_F(PhotometryOfImages, RefusesOptionsThatContradictEachOtherAllAtOnce) {
+  const test::ProgramResult run = test::run_astroid({"photometry", "run/images/camera1_000000.fits", "--catalogue",
+                                                     "stars.csv", "--threshold", "-1", "--method", "psf"},
+                                                    folder_.path());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("3 problems"));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <set>
-#include <tuple>
+#include <utility>
 
 #include "astroid/core/fits_writer.hpp"
 #include "astroid/core/vector_target.hpp"
@@ -53,8 +53,14 @@ const Words kEveryEffect = {"CCD/FullWell=200000",    "CCD/ADCBits=13",         
 const std::set<std::string> kEffects = {"jitter-model", "stars",     "sky",           "prnu", "dark-current", "gain",
                                         "photon-noise", "full-well", "readout-noise", "bias", "adc"};
 
-/// What optics, sky, pixels and electronics of both kinds of detector add to these.
-const Words kOptics = {"Telescope/Throughput=0.9",
+/// What pointing, optics, sky, pixels and electronics of both kinds of detector add to these.
+const Words kOptics = {"StellarField/Catalogue=field.csv",
+                       "StellarField/Variables=variables.csv",
+                       "Satellite/Drift/YawRate=900",
+                       "Satellite/Drift/Roll=2",
+                       "Satellite/Quarter=40 s",
+                       "Satellite/Repointing/Pitch=0.5",
+                       "Telescope/Throughput=0.9",
                        "Telescope/Ageing/EndOfLife=0.8",
                        "Telescope/Vignetting/model=cos2",
                        "Telescope/Ghosts/Fraction=0.001",
@@ -68,7 +74,9 @@ const Words kOptics = {"Telescope/Throughput=0.9",
                        "CCD/CosmicRays/Rate=100",
                        "CCD/BadPixels/Dead=0.5",
                        "CCD/BadPixels/Hot=0.5"};
-const Words kCcd = {"CCD/ChargeInjection/EveryRows=40",
+const Words kCcd = {"CCD/OpticalAxis/X=3000",  // far away, so that aberration moves stars
+                    "Satellite/Aberration=on",
+                    "CCD/ChargeInjection/EveryRows=40",
                     "CCD/ChargeInjection/Level=5000",
                     "CCD/BrighterFatter/Serial=3e-7",
                     "CCD/BrighterFatter/Parallel=4e-7",
@@ -87,10 +95,33 @@ const Words kCcd = {"CCD/ChargeInjection/EveryRows=40",
                     "CCD/Electronics/RowOffset=1",
                     "Photometry/Calibration/Smearing=on",
                     "Photometry/Calibration/Bias=prescan"};
-const Words kCmos = {"Simulation/Type=CMOS",        "CMOS/Reads=4",         "CMOS/ResetNoise=20",
-                     "CMOS/ColumnNoise=3",          "CMOS/RowNoise=3",      "CMOS/GainSpread=1",
-                     "CMOS/ReadoutNoiseSpread=0.2", "CMOS/Coupling/Side=1", "CMOS/Telegraph/Fraction=1",
-                     "CMOS/Telegraph/Current=5",    "CMOS/LineTime=0.1",    "CMOS/Persistence/Fraction=0.3 0.1",
+const Words kOtherCcd = {"StellarField/SkyModel=zodiacal",
+                         "CCD/CosmicRays/model=slab",
+                         "CCD/CTI/model=traps",
+                         "CCD/CTI/TrapDensity=4.9 6.62",
+                         "CCD/CTI/RegisterDensity=0.5 0",
+                         "CCD/CTI/CrossSection=2.46e-20 2.45e-23",
+                         "CCD/CTI/ReleaseTime=2.37e-4 0.14",
+                         "CCD/ReferencePixels/Overscan=10",
+                         "CCD/Smearing/model=frame-transfer",
+                         "CCD/Electronics/GainDrift=0.1",
+                         "CCD/Electronics/PickUpAmplitude=3",
+                         "CCD/Electronics/PickUpColumnFrequency=0.37",
+                         "Simulation/Quarter=1",
+                         "Photometry/Method=weighted"};
+const Words kCmos = {"Simulation/Type=CMOS",
+                     "CMOS/Reads=4",
+                     "CMOS/ResetNoise=20",
+                     "CMOS/ColumnNoise=3",
+                     "CMOS/RowNoise=3",
+                     "CMOS/GainSpread=1",
+                     "CMOS/ReadoutNoiseSpread=0.2",
+                     "CMOS/Coupling/Side=1",
+                     "CMOS/Telegraph/Fraction=1",
+                     "CMOS/Telegraph/Current=5",
+                     "CMOS/OffsetSpread=4",
+                     "CMOS/LineTime=0.1",
+                     "CMOS/Persistence/Fraction=0.3 0.1",
                      "CMOS/Persistence/Time=60 900"};
 
 constexpr std::size_t kImages = 3;
@@ -136,6 +167,9 @@ class Processors : public testing::Test {
     constexpr int kCrowd = 580;  // 14 stars in 100 px
     test::write_pixel_field(folder_.path() / "crowd.csv", 64, kCrowd, bright);
     write_psf(folder_.path());
+    folder_.write("variables.csv",
+                  "id,kind,amplitude_ppm,period_d,depth_ppm,duration_h,epoch_d\n"
+                  "bright,sinusoid,5000,0.002,,,\nbright,transit,,0.003,10000,0.02,0.0005\n");
   }
   std::filesystem::path run(const std::string& name, const Words& runner, const Words& arguments) {
     const test::ProgramResult result =
@@ -188,16 +222,11 @@ TEST_P(SameForAnySimdTarget, AreAllProducts) {
   }
 }
 
-/// Effects that are on in the plan of a run.
-std::size_t effects_on(const std::filesystem::path& folder) {
-  std::size_t on = 0;
-  const auto plan = nlohmann::json::parse(test::read_file(folder / "plan.json"));
-  for (const auto& effect : plan.at("effects")) on += effect.at("on") ? 1U : 0U;
-  return on;
-}
-
 TEST_F(Processors, AWholeInstrumentHasTheSameBitsOnAnyVectorsAndThreads) {
-  for (const auto& [name, detector, fewest] : {std::tuple{"ccd", kCcd, 26U}, std::tuple{"cmos", kCmos, 23U}}) {
+  std::set<std::string> ever;
+  std::set<std::string> never;
+  for (const auto& [name, detector] :
+       {std::pair{"ccd", kCcd}, std::pair{"other", kOtherCcd}, std::pair{"cmos", kCmos}}) {
     std::filesystem::path first;
     int threads = 0;
     for (const std::string& target : vector_targets()) {
@@ -206,12 +235,21 @@ TEST_F(Processors, AWholeInstrumentHasTheSameBitsOnAnyVectorsAndThreads) {
           joined({set(kEveryEffect), set(kOptics), set(detector), {"--threads", std::to_string(1 + threads++ % 3)}}));
       if (first.empty()) {
         first = folder;
-        EXPECT_GE(effects_on(first), fewest) << name;
+        const auto plan = nlohmann::json::parse(test::read_file(folder / "plan.json"));
+        for (const auto& effect : plan.at("effects")) {
+          const auto& effect_name = effect.at("name").get_ref<const std::string&>();
+          (effect.at("on") ? ever : never).insert(effect_name);
+        }
       } else {
         EXPECT_GE(test::expect_same_products(first, folder), kImages + 30U) << name;
       }
     }
   }
+  for (const std::string& effect : ever) never.erase(effect);
+  // Stars at pixels do not move by themselves, the sub-pixel renderer promises a tolerance instead of bits, and jitter
+  // comes from one place at a time.
+  EXPECT_THAT(never,
+              testing::UnorderedElementsAre("proper-motion", "jitter-file", "sub-pixel-stars", "intra-pixel-response"));
 }
 
 TEST(VectorInstructions, AreChosenByTheEnvironment) {
@@ -277,12 +315,8 @@ TEST_P(SameOnAnyProcessor, AreImagesAndLightCurves) {
 }
 
 TEST_P(SameOnAnyProcessor, AreImagesOfAWholeInstrument) {
-  for (const Words& detector : {kCcd, kCmos}) {
-    const Words arguments = joined({set(kEveryEffect),
-                                    {"--set", "StellarField/Catalogue=field.csv"},
-                                    set(kOptics),
-                                    set(detector),
-                                    {"--overwrite"}});
+  for (const Words& detector : {kCcd, kOtherCcd, kCmos}) {
+    const Words arguments = joined({set(kEveryEffect), set(kOptics), set(detector), {"--overwrite"}});
     const auto native = run("native", {"env", kNoGnuplot}, arguments);
     const auto emulated = run("emulated", emulator_, arguments);
     EXPECT_GE(test::expect_same_products(native, emulated, {"images/", "steps/", "photometry/", "plan.", "truth/"}),

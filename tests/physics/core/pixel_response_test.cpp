@@ -14,6 +14,7 @@
 #include "astroid/core/sub_pixel.hpp"
 #include "astroid/test/psf_table.hpp"
 #include "astroid/test/quadrature.hpp"
+#include "astroid/test/sub_pixel_psf.hpp"
 
 namespace astroid {
 namespace {
@@ -29,19 +30,7 @@ std::vector<double> prf(const PixelPsf& psf, PixelPosition star) {
 /// The same pixels by the sub-pixel map: light of the cells times their sensitivity, or with the response in Fourier
 /// space.
 std::vector<double> by_cells(const SubPixelRenderer& renderer, const PixelResponse& response, PixelPosition star) {
-  const StarLight light{.centre = star, .electrons = 1.0};
-  SubPixelRenderer::Workspace workspace;
-  std::vector<double> p(kBox.size());
-  for (const Rectangle& tile : renderer.tiles()) {
-    const int n = response.cells;
-    std::vector<double> cells(tile.size() * static_cast<std::size_t>(n * n));
-    renderer.render_cells(tile, {&light, 1}, workspace, cells);
-    for (int y = 0; y < tile.ny * n; ++y)
-      for (int x = 0; x < tile.nx * n; ++x)
-        p[static_cast<std::size_t>((tile.y0 - kBox.y0 + y / n) * kBox.nx + tile.x0 - kBox.x0 + x / n)] +=
-            response.at(x % n, y % n) * cells[static_cast<std::size_t>(y * tile.nx * n + x)];
-  }
-  return p;
+  return test::light_by_cells(renderer, response, star, kBox);
 }
 std::vector<double> in_fourier_space(const SubPixelRenderer& renderer, PixelPosition star) {
   return by_cells(renderer, {}, star);
@@ -114,7 +103,7 @@ TEST(PixelResponse, ChangesFluxWithThePlaceAsFirstOrderSays) {
   // A star of a narrow PSF sees the sensitivity at its place.
   const PixelResponse response = cosine_response(32, 0.1);
   const double sigma = 0.05;
-  const auto psf = make_prf_psf(make_gaussian_table(sigma, 1e-6), 1e-5, 0, response);
+  const auto psf = make_prf_psf(make_gaussian_table(sigma, 1e-6), PsfAccuracy(1e-5, 1.0), 0, response);
   const double centre = 1.0 / (1.0 - 0.05) / (1.0 - 0.05);  // of a profile with mean 1 - depth/2 along each axis
   for (const double x : {0.0, 0.1, 0.25, 0.4}) {
     const auto p = prf(*psf, {x, 0.0});

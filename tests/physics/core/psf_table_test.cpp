@@ -45,6 +45,31 @@ Errors aperture_errors(const PixelPsf& psf, const PixelPsf& truth) {
   return errors;
 }
 
+/// Largest error in any square of 2 or 3 px of a star's image, relative to the star: what a renderer states of itself.
+double error_anywhere(const PixelPsf& psf, const PixelPsf& truth) {
+  constexpr int kPositions = 37;
+  constexpr Rectangle kBox{-5, -5, 11, 11};
+  double worst = 0.0;
+  for (int j = 0; j < kPositions; ++j)
+    for (int i = 0; i < kPositions; ++i) {
+      const PixelPosition star{(i + 0.5) / kPositions - 0.5, (j + 0.5) / kPositions - 0.5};
+      const std::vector<double> made = render(psf, star, kBox);
+      const std::vector<double> exact = render(truth, star, kBox);
+      for (const int side : {2, 3})
+        for (int y = 0; y + side <= kBox.ny; ++y)
+          for (int x = 0; x + side <= kBox.nx; ++x) {
+            double error = 0.0;
+            for (int b = y; b < y + side; ++b)
+              for (int a = x; a < x + side; ++a) {
+                const auto pixel = static_cast<std::size_t>(b * kBox.nx + a);
+                error += made[pixel] - exact[pixel];
+              }
+            worst = std::max(worst, std::abs(error));
+          }
+    }
+  return worst;
+}
+
 struct Case {
   int phases;
   double sigma, rms, worst;  // ppm
@@ -55,16 +80,17 @@ TEST(PhaseLibrary, HasTheErrorsThatWereMeasuredIndependently) {
                         Case{16, 0.5, 1.29, 1.95}, Case{16, 0.6, 0.76, 1.58}, Case{16, 1.0, 0.19, 0.32},
                         Case{32, 0.5, 0.081, 0.12}, Case{32, 0.6, 0.050, 0.095}, Case{32, 1.0, 0.012, 0.020}}) {
     // 64 samples per pixel: the spline is not in the way.
-    const auto psf = make_prf_psf(test::gaussian_psf_table(c.sigma, 64.0, 6.0), 1.0, c.phases);
+    const PsfAccuracy of_the_star(1.0, 1.0);
+    const auto psf = make_prf_psf(test::gaussian_psf_table(c.sigma, 64.0, 6.0), of_the_star, c.phases);
     const Errors errors = aperture_errors(*psf, *make_gaussian_psf(c.sigma));
     constexpr double kFactor = 1.5;
     EXPECT_LT(1e6 * errors.rms, c.rms * kFactor) << c.phases << " phases, sigma " << c.sigma;
     EXPECT_GT(1e6 * errors.rms, c.rms / kFactor) << c.phases << " phases, sigma " << c.sigma;
     EXPECT_LT(1e6 * errors.worst, c.worst * kFactor) << c.phases << " phases, sigma " << c.sigma;
     EXPECT_GT(1e6 * errors.worst, c.worst / kFactor) << c.phases << " phases, sigma " << c.sigma;
-    // What the renderer says of itself is the worst there is.
+    // What the renderer says of itself is the worst there is, in squares of 2 px too and wherever they lie.
     EXPECT_GT(psf->approximation_error(), 0.7 * errors.worst);
-    EXPECT_LT(psf->approximation_error(), 2.0 * errors.worst);
+    EXPECT_LT(psf->approximation_error(), 2.0 * error_anywhere(*psf, *make_gaussian_psf(c.sigma)));
   }
 }
 

@@ -10,6 +10,7 @@
 
 #include "astroid/core/distributions.hpp"
 #include "astroid/sim/simulator.hpp"
+#include "astroid/test/aperture_fluxes.hpp"
 #include "astroid/test/scenes.hpp"
 
 namespace astroid {
@@ -42,21 +43,6 @@ std::shared_ptr<Plan> plan_with(const Scene& scene, JitterTreatment treatment) {
   return plan;
 }
 
-std::vector<double> aperture_fluxes(const Scene& scene, const ExposureState& state) {
-  std::vector<double> fluxes;
-  for (const std::size_t target : scene.targets()) {
-    const PixelPosition p = scene.stars()[target].position;
-    const Rectangle box =
-        intersect({static_cast<int>(std::floor(p.x + 0.5)) - 1, static_cast<int>(std::floor(p.y + 0.5)) - 1, 3, 3},
-                  {0, 0, kSide, kSide});
-    double sum = 0.0;
-    for (int y = box.y0; y < box.y1(); ++y)
-      for (int x = box.x0; x < box.x1(); ++x) sum += state.expected.whole().view(0).at(x, y);
-    fluxes.push_back(sum);
-  }
-  return fluxes;
-}
-
 TEST(MovingImage, KeepsEveryFluxOfACrowdWithinTheAccuracy) {
   const auto scene = std::make_shared<const Scene>(mission(), crowd());
   const Simulator recalled(scene, plan_with(*scene, JitterTreatment::kPolynomial), 0);
@@ -72,8 +58,8 @@ TEST(MovingImage, KeepsEveryFluxOfACrowdWithinTheAccuracy) {
     recalled.expect(exposure, a);
     rendered.expect(exposure, b);
     farthest = std::max({farthest, std::abs(a.attitude.mean.yaw), std::abs(a.attitude.mean.pitch)});
-    const std::vector<double> fast = aperture_fluxes(*scene, a);
-    const std::vector<double> slow = aperture_fluxes(*scene, b);
+    const std::vector<double> fast = test::aperture_fluxes(*scene, a);
+    const std::vector<double> slow = test::aperture_fluxes(*scene, b);
     for (std::size_t t = 0; t < fast.size(); ++t) {
       const double error = std::abs(fast[t] - slow[t]);
       worst = std::max(worst, error / scene->summary().flux_tolerance(slow[t]));
@@ -113,8 +99,8 @@ TEST(MovingImage, HoldsUpToTheBordersOfACellAndBeyond) {
   for (std::size_t k = 0; k < places.size(); ++k) {
     recalled.expect(static_cast<std::int64_t>(k), a);
     rendered.expect(static_cast<std::int64_t>(k), b);
-    const std::vector<double> fast = aperture_fluxes(*scene, a);
-    const std::vector<double> slow = aperture_fluxes(*scene, b);
+    const std::vector<double> fast = test::aperture_fluxes(*scene, a);
+    const std::vector<double> slow = test::aperture_fluxes(*scene, b);
     for (std::size_t t = 0; t < fast.size(); ++t)
       worst = std::max(worst, std::abs(fast[t] - slow[t]) / scene->summary().flux_tolerance(slow[t]));
   }

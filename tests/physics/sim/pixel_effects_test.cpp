@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "astroid/core/frame.hpp"
+#include "astroid/core/statistics/sums.hpp"
 #include "astroid/sim/simulator.hpp"
 #include "astroid/test/scenes.hpp"
 
@@ -45,6 +46,34 @@ TEST(PixelEffects, AreInTheOrderOfTheCharge) {
   EXPECT_LT(place("brighter-fatter"), place("full-well"));
   EXPECT_LT(place("full-well"), place("cti"));
   EXPECT_LT(place("cti"), place("readout-noise"));
+}
+
+// A pattern that were drawn anew in each exposure would average out over a series as noise does.
+TEST(DarkCurrent, HasThePatternOfItsPixelsInEveryExposure) {
+  constexpr int kSide = 200;
+  constexpr double kRate = 1.2;
+  constexpr double kDsnu = 0.15;
+  Mission mission = test::bare_mission(kSide, kSide);
+  mission.telescope.cameras = 2;
+  mission.ccd.dark_current = ElectronsPerSecond(kRate);
+  mission.ccd.dsnu = kDsnu;
+  ChainRun run(mission);
+  const auto expected = [](const Simulator& simulator, std::int64_t exposure) {
+    ExposureState state = simulator.make_state();
+    simulator.expect(exposure, state);
+    const auto pixels = std::as_const(state.expected).whole().pixels();
+    return std::vector<double>(pixels.begin(), pixels.end());
+  };
+  const std::vector<double> first = expected(run.simulator, 0);
+  EXPECT_EQ(first, expected(run.simulator, 1));
+  EXPECT_EQ(first, expected(run.simulator, mission.simulation.exposures - 1));
+  EXPECT_NE(first, expected(Simulator(run.scene, run.plan, 1), 0)) << "another camera has another detector";
+  const double level = kRate * mission.simulation.exposure_time.value();
+  RunningMoments moments;
+  for (const double value : first) moments.add(value / level - 1.0);
+  const double n = kSide * kSide;
+  EXPECT_NEAR(moments.mean(), 0.0, 4.0 * kDsnu / std::sqrt(n));
+  EXPECT_NEAR(std::sqrt(moments.variance()) / kDsnu, 1.0, 4.0 / std::sqrt(2.0 * n));
 }
 
 TEST(FlatField, MultipliesByItsPatternBesideThatOfThePixels) {

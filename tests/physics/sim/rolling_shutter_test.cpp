@@ -156,7 +156,7 @@ TEST(RollingShutter, OfBandsHasNoSeams) {
   Mission mission = jittering();
   const Made first = made(mission, 3);
   const int rows = first.plan->knobs.band_rows;
-  if (rows >= kSide) GTEST_SKIP() << "one band";
+  ASSERT_LT(rows, kSide) << "one band has no border";
   const Made border = made(mission, 3, {{40.0, rows * std::floor(kSide / 2.0 / rows) - 0.5, 3e5}});
   EXPECT_NEAR(moments_of(border, 0).light / 3e5, 1.0, 1e-3);
 }

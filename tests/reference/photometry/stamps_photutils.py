@@ -20,8 +20,8 @@ def stamp(kind, x, y, size, slope):
         return IntegratedGaussianPRF(sigma=size, flux=1.0, x_0=x, y_0=y)(columns, rows)
     if kind == "moffat":
         profile = Moffat2D(amplitude=(slope - 1) / (np.pi * size**2), x_0=0, y_0=0, gamma=size, alpha=slope)
-        # photutils 1.6 integrates one pixel at a time.
-        return PRFAdapter(profile, renormalize_psf=False, flux=1.0, x_0=x, y_0=y, xname="x_0", yname="y_0")(columns, rows)
+        # Moved by the adapter: photutils 1.6 swaps x and y of a profile that it moves by the names of its centre.
+        return PRFAdapter(profile, renormalize_psf=False, flux=1.0, x_0=x, y_0=y)(columns, rows)
     return CircularAperture((x, y), size).to_mask(method="exact").to_image((SIDE, SIDE))
 
 

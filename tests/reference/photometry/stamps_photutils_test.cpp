@@ -18,6 +18,7 @@ namespace astroid {
 namespace {
 
 constexpr Rectangle kBox{0, 0, 15, 15};
+constexpr double kAccuracy = 1e-6;  // of profiles that are interpolated: of the light in an aperture
 
 /// A stamp that photutils makes too.
 struct Case {
@@ -59,7 +60,8 @@ std::vector<double> stamp_of(const PixelPsf& psf, PixelPosition centre) {
 class PhotutilsStamps : public testing::Test {
  protected:
   void SetUp() override {
-    if (!test::python_has({"numpy", "photutils"})) GTEST_SKIP() << "python3-photutils is not installed";
+    if (!test::python_has({"numpy", "scipy", "photutils"}))
+      GTEST_SKIP() << "python3-photutils or -scipy is not installed";
   }
 };
 
@@ -74,7 +76,6 @@ TEST_F(PhotutilsStamps, OfAGaussianAreOurs) {
 }
 
 TEST_F(PhotutilsStamps, OfAMoffatProfileAreOursToTheAccuracyAsked) {
-  constexpr double kAccuracy = 1e-6;  // of the light in an aperture
   std::vector<Case> cases;
   for (const double beta : {2.5, 4.765}) cases.push_back({"moffat", {7.137, 6.711}, 1.7, beta});
   for_each_stamp(cases, [](const Case& c, const std::vector<double>& theirs) {

@@ -50,6 +50,13 @@ TEST(ReadFrame, TakesTheKeywordsOfOthers) {
   EXPECT_EQ(file.frame.header.saturation, Adu(50000.0));
 }
 
+TEST(ReadFrame, TakesAsBiasOnlyWhatIsCounts) {
+  const test::TemporaryFolder folder;
+  EXPECT_EQ(read_frame(write_float_image(folder, {{"BIAS", 200.0, "[adu] bias"}})).frame.header.bias, Adu(200.0));
+  const test::TemporaryFolder other;
+  EXPECT_EQ(read_frame(write_float_image(other, {{"BIAS", 2.5, "[V] of the gate"}})).frame.header.bias, Adu(0.0));
+}
+
 TEST(ReadFrame, KnowsImagesInElectrons) {
   const test::TemporaryFolder folder;
   EXPECT_EQ(read_frame(write_float_image(folder, {{"BUNIT", "electrons"}, {"GAIN", 3.0}})).frame.header.gain,

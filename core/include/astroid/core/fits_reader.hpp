@@ -68,6 +68,8 @@ class FitsReader {
   [[nodiscard]] std::optional<std::int64_t> integer(int unit, const std::string& key) const;
   [[nodiscard]] std::optional<bool> flag(int unit, const std::string& key) const;
   [[nodiscard]] std::optional<std::string> text(int unit, const std::string& key) const;
+  /// What stands in brackets at the start of a keyword's comment, as FITS writes units: "adu" of `/ [adu] bias`.
+  [[nodiscard]] std::optional<std::string> unit_of(int unit, const std::string& key) const;
   /// The lines of 80 characters one after the other, as SkyProjection::from_header takes them.
   [[nodiscard]] std::string header_text(int unit) const;
   [[nodiscard]] std::vector<std::string> history(int unit) const;

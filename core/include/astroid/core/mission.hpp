@@ -9,6 +9,7 @@
 #include "astroid/core/mission/simulation.hpp"
 #include "astroid/core/mission/stellar_field.hpp"
 #include "astroid/core/mission/telescope.hpp"
+#include "astroid/core/units.hpp"
 
 namespace astroid {
 
@@ -30,7 +31,6 @@ struct Mission {
 /// Time from the start of the mission (quarter 0) to that of the run. What is periodic, ages or varies goes on from
 /// quarter to quarter.
 inline Seconds quarter_start(const Mission& mission) {
-  constexpr double kSecondsPerDay = 86400.0;
   return Seconds(static_cast<double>(mission.simulation.quarter) * mission.satellite.quarter_days * kSecondsPerDay);
 }
 

@@ -70,13 +70,26 @@ class PixelPsf {
   /// for any sub-pixel position.  @param lost  in (0, 1)
   [[nodiscard]] virtual double stamp_half_width(double lost) const = 0;
 
-  /// Upper bound of the relative error of an aperture's flux due to the approximation of this renderer (0 if exact).
+  /// Relative error of the light in an aperture, anywhere in the star's image, by the approximation of this renderer (0
+  /// if exact); PsfAccuracy says what it is relative to.
   [[nodiscard]] virtual double approximation_error() const = 0;
 
   /// Where on the detector it may be told from others: one place for a PSF that is the same everywhere.
   [[nodiscard]] virtual std::vector<PixelPosition> places() const { return {{0.0, 0.0}}; }
 
   [[nodiscard]] virtual std::string description() const = 0;
+};
+
+/// What an approximation may do to the light of a star in any square of 2 or 3 px, about the star or in its wings.
+///
+/// A fainter star's aperture may lie there, so light is judged wherever it falls: by itself, or, where there is little
+/// of it, by what the faintest star in question has in its aperture.
+struct PsfAccuracy {
+  // NOLINTNEXTLINE(google-explicit-constructor): mostly one number
+  PsfAccuracy(double of_light, double least = 1e-3) : relative(of_light), least_light(least) {}
+  double relative;     ///< error relative to the light in the square
+  double least_light;  ///< of the star's flux: less light than this is judged as if it were this much; by default the
+                       ///< star is a thousand times as bright as the faintest
 };
 
 /// The pixels of a stamp of half-width r around a star: every pixel whose area touches the square, edges included.
@@ -95,7 +108,7 @@ std::shared_ptr<const PixelPsf> make_gaussian_psf(double sigma);
 /// What a PSF with wings leaves out, and what the detector does to it.
 struct PsfWings {
   static constexpr int kLongestReach = 90;
-  int reach = 30;          ///< px: half the side of the square beyond which light is left out, 2 .. kLongestReach
+  int reach = 30;          ///< px: where light ends, faded out over the last 6 px (F120); 2 .. kLongestReach
   double diffusion = 0.0;  ///< px: rms of the charge diffusion, 0 .. 3
 };
 
@@ -103,15 +116,18 @@ struct PsfWings {
 /// library, four-point interpolation in between, with more phases within 8 px than beyond (renderer `prf`).
 ///
 /// Normalised on infinite support: (1 + r²/alpha²)^(1-beta) of the light is farther than r from the star, and what is
-/// beyond the reach is left out, not redistributed.
+/// beyond the reach is left out, not redistributed. So that light ends in no step, which the sub-pixel map could not
+/// hold, it fades out over the last 6 px (F120), or over half of a reach below 12 px.
 /// @param fwhm      px, 0.2 .. 20; alpha = fwhm / (2 sqrt(2^(1/beta) - 1))
 /// @param beta      more than 1, at most 100
-/// @param accuracy  relative flux error allowed to the interpolation; decides the number of phases.
+/// @param accuracy  allowed to the interpolation; decides the number of phases.
 /// @param phases    of the core per axis, or 0 to let `accuracy` decide.
+/// @param response  sensitivity within every pixel, folded in as by make_prf_psf()
 /// @accuracy  approximation_error(), tested against adaptive quadrature (Moffat.HasTheFluxOfAdaptiveQuadrature)
 /// @source Moffat1969, Trujillo2001   @throws InputError naming every unusable parameter
-std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings, double accuracy,
-                                                int phases = 0);
+std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const PsfWings& wings,
+                                                const PsfAccuracy& accuracy, int phases = 0,
+                                                const PixelResponse& response = {});
 
 /// Diffraction pattern of a round aperture with a round central obscuration, integrated over pixels like
 /// make_moffat_psf().
@@ -123,7 +139,8 @@ std::shared_ptr<const PixelPsf> make_moffat_psf(double fwhm, double beta, const 
 /// @param obscuration    diameter of the central obscuration over that of the aperture, 0 to less than 1
 /// @source Schroeder2000 §10.2
 std::shared_ptr<const PixelPsf> make_airy_psf(double lambda_over_d, double obscuration, const PsfWings& wings,
-                                              double accuracy, int phases = 0);
+                                              const PsfAccuracy& accuracy, int phases = 0,
+                                              const PixelResponse& response = {});
 
 /// A PSF given as a table: surface brightness on a grid finer than the pixel.
 struct PsfTable {
@@ -147,11 +164,12 @@ PsfTable diffuse_psf_table(const PsfTable& table, Pixels sigma);
 /// Pixel-integrated library over sub-pixel phases with four-point Lagrange interpolation (renderer `prf`).
 ///
 /// The table's flux per sample is kept exactly: its running integral is a tensor cubic spline through the sample edges.
-/// @param accuracy  relative flux error allowed to the interpolation; decides the number of phases.
+/// @param accuracy  allowed to the interpolation; decides the number of phases. At the border of the table, where light
+///                  may end in a step, the error is not judged: a tenth of the step over the square of the phases.
 /// @param phases    number of phases per axis, or 0 to let `accuracy` decide.
 /// @param response  sensitivity within every pixel, folded in exactly: a fraction is then the light of each cell of the
 ///                  pixel times the cell's sensitivity, and their sum is 1 on the mean over the star's places only.
-std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, double accuracy, int phases = 0,
+std::shared_ptr<const PixelPsf> make_prf_psf(const PsfTable& table, const PsfAccuracy& accuracy, int phases = 0,
                                              const PixelResponse& response = {});
 
 /// A circular Gaussian as a table, its samples holding the exact flux, so fine and so wide that make_prf_psf() of it is
@@ -178,7 +196,8 @@ std::vector<FieldPsfTable> read_field_psf(const std::string& path);
 /// @param diffusion  px, of the charge (diffuse_psf_table()).  @param accuracy, phases  of make_prf_psf().
 /// @complexity  as many times make_prf_psf()'s as there are tables
 /// @throws InputError when two tables share a place.
-std::shared_ptr<const PixelPsf> make_field_psf(std::span<const FieldPsfTable> tables, Pixels diffusion, double accuracy,
-                                               int phases = 0);
+std::shared_ptr<const PixelPsf> make_field_psf(std::span<const FieldPsfTable> tables, Pixels diffusion,
+                                               const PsfAccuracy& accuracy, int phases = 0,
+                                               const PixelResponse& response = {});
 
 }  // namespace astroid

@@ -2,9 +2,11 @@
 #pragma once
 
 #include <complex>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/psf.hpp"
@@ -50,5 +52,31 @@ std::shared_ptr<const PsfSpectrum> make_gaussian_spectrum(double sigma);
 /// @accuracy  1e-13 (test: PsfSpectrum.OfATableIsTheFourierTransformOfItsSurfaceBrightness)
 /// @complexity  sample(): n_kx n_x n_y + n_kx n_ky n_y complex products for a table of n_x by n_y samples
 std::shared_ptr<const PsfSpectrum> make_table_spectrum(const PsfTable& table);
+
+/// Moffat's profile faded out towards the reach of its wings (F120), as make_moffat_psf() has it, charge diffusion
+/// included: its cosine transform by Gauss-Legendre quadrature as fine as the frequencies ask for.
+///
+/// error_beyond() is measured as for a table.
+/// @accuracy  1e-12 (tests: CircularSpectrum.OfAMoffatProfileIsABesselFunction,
+///            CircularSpectrum.IsTheFourierTransformOfTheFadedLight, CircularSpectrum.OfDiffusedLightIsTheProduct)
+/// @complexity  sample(): n_kx n² + n_kx n_ky n products, n = 4 reach × (largest k)
+/// @throws InputError as make_moffat_psf()
+std::shared_ptr<const PsfSpectrum> make_moffat_spectrum(double fwhm, double beta, const PsfWings& wings);
+
+/// The same for the diffraction pattern of make_airy_psf(). Without the fade it would end at 1 / (lambda/D).
+std::shared_ptr<const PsfSpectrum> make_airy_spectrum(double lambda_over_d, double obscuration, const PsfWings& wings);
+
+/// A PSF that varies over the field, in Fourier space: the light of a star is a sum over members with weights that
+/// belong to its place.
+struct FieldSpectrum {
+  std::vector<std::shared_ptr<const PsfSpectrum>> members;
+  /// Weights of the members at a place; their sum is 1.
+  std::function<void(PixelPosition, std::span<double>)> weights;
+  double amplification = 1.0;  ///< largest sum of the weights' absolute values: what errors of the members become
+};
+
+/// The PSF that make_field_psf() makes: every star has exactly the blend of its own place.
+/// @throws InputError as make_field_psf()
+FieldSpectrum make_field_spectrum(std::span<const FieldPsfTable> tables, Pixels diffusion);
 
 }  // namespace astroid

@@ -55,6 +55,8 @@ class SubPixelRenderer {
  public:
   /// @throws InputError when the PSF needs a finer map than 128 sub-pixels, or the smallest tile more than the memory.
   SubPixelRenderer(std::shared_ptr<const PsfSpectrum> psf, Rectangle detector, const SubPixelSettings& settings);
+  /// A PSF that varies over the field takes a map for each of its members; the error is that of its blends.
+  SubPixelRenderer(FieldSpectrum psf, Rectangle detector, const SubPixelSettings& settings);
   SubPixelRenderer(const SubPixelRenderer&) = delete;
   SubPixelRenderer& operator=(const SubPixelRenderer&) = delete;
   SubPixelRenderer(SubPixelRenderer&&) = delete;
@@ -99,6 +101,8 @@ class SubPixelRenderer {
   [[nodiscard]] double band() const;             ///< highest frequency used along each axis, cycles/px
   [[nodiscard]] double predicted_error() const;  ///< of the settings' accuracy
   [[nodiscard]] double workspace_bytes() const;
+  /// Maps of a tile, one after the other: members of the PSF.
+  [[nodiscard]] std::size_t maps() const;
   /// Nodes of the map of one tile.
   [[nodiscard]] std::size_t map_size() const;
   [[nodiscard]] std::string description() const;

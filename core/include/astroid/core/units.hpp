@@ -71,6 +71,8 @@ constexpr Pixels operator/(Arcseconds angle, PixelScale scale) { return Pixels(a
 constexpr Arcseconds operator*(Pixels distance, PixelScale scale) { return Arcseconds(distance.value() * scale.value()); }
 
 inline constexpr double kPi = 3.141592653589793238462643383279502884;
+inline constexpr double kFwhmPerSigma = 2.35482004503094938202313865291939;  ///< of a Gaussian, 2 sqrt(2 ln 2)
+inline constexpr double kSecondsPerDay = 86400.0;
 inline constexpr double kArcsecondsPerDegree = 3600.0;
 constexpr Radians to_radians(Degrees angle) { return Radians(angle.value() * (kPi / 180.0)); }
 constexpr Degrees to_degrees(Radians angle) { return Degrees(angle.value() * (180.0 / kPi)); }

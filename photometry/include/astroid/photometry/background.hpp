@@ -17,6 +17,7 @@ namespace astroid {
 /// Level and scatter of a set of pixel values of which some hold stars.
 struct SkyEstimate {
   double level = 0.0;      ///< NaN if no pixel was left
+  double mode = 0.0;       ///< 2.5 median - 1.5 mean where the two are within 0.3 rms, as SExtractor; else the median
   double rms = 0.0;        ///< of one pixel, corrected for the tails that clipping cuts off a normal distribution
   std::size_t pixels = 0;  ///< that were left after clipping
 };
@@ -29,13 +30,26 @@ struct SkyEstimate {
 /// @source BertinArnouts1996 §7.
 [[nodiscard]] SkyEstimate clipped_sky(std::vector<double>& values, double clip, bool mode);
 
+/// How the level of the sky follows from the pixels of a cell.
+enum class SkyEstimator {
+  kLightFit,  ///< clipped median, less the light of stars in it: a fit to the distribution of the pixels around it
+  kMode,      ///< 2.5 median - 1.5 mean, as SExtractor
+  kMedian
+};
+
 struct MeshSettings {
   int cell = 64;      ///< side of a cell, px; cells are stretched so that a whole number of them fills the image
   int filter = 3;     ///< side of the median filter over cells; 1: none
   double clip = 3.0;  ///< sigma
+  SkyEstimator estimator = SkyEstimator::kLightFit;
 };
 
 /// A smooth background over one region of a frame, in ADU: natural bicubic spline through the centres of the cells.
+///
+/// @accuracy bias in a field of 1500 stars on 1024² px, sky 20 e-, rms 6.7 e-: 0.0 e- (mode -0.1, median +0.1); of
+/// 15,000 stars: -0.1 e- (mode +0.7, median +1.3) (test: BackgroundBias.IsATenthOfAnElectronAtMost).
+/// @complexity O(pixels): a histogram for each cell.
+/// @source F150, F151; BertinArnouts1996.
 class BackgroundMap {
  public:
   /// Estimates from the pixels that are finite and without any flag. Cells with fewer than half of their pixels are
@@ -51,14 +65,24 @@ class BackgroundMap {
   void rms_row(int y, std::span<double> rms) const;
   [[nodiscard]] double median_level() const { return median_level_; }  ///< over the cells, ADU
   [[nodiscard]] double median_rms() const { return median_rms_; }
+  /// Of the level in one place, where the scatter of a pixel is `rms`, ADU.
+  [[nodiscard]] double level_error(double rms) const { return relative_error_ * rms; }
+  /// Of the cells after smoothing, row by row, ADU.
+  [[nodiscard]] std::span<const double> cell_levels() const { return level_.value; }
+  [[nodiscard]] std::span<const double> cell_rms() const { return rms_.value; }
+  /// Share of the pixels that hold more light of stars than a fiftieth of their scatter, as far as the fit can tell;
+  /// NaN with another estimator.
+  [[nodiscard]] double lit_share() const { return lit_share_; }
 
  private:
+  struct Cells;
   struct Grid {
     std::vector<double> value;      // shape (rows_, columns_)
     std::vector<double> curvature;  // second derivative along y, per cell²
   };
   void fill_empty_cells(std::vector<double>& value) const;
   void filter_cells(std::vector<double>& value, int side) const;
+  bool take_out_light(const Frame& frame, Cells& cells);
   [[nodiscard]] Grid make_grid(std::vector<double> value) const;
   void grid_row(const Grid& grid, int y, std::span<double> out) const;
 
@@ -69,6 +93,8 @@ class BackgroundMap {
   Grid rms_;
   double median_level_ = 0.0;
   double median_rms_ = 0.0;
+  double relative_error_ = 0.0;
+  double lit_share_ = 0.0;
 };
 
 /// Takes the background out of a region of a frame but leaves the bias in, which calibration removes.
@@ -84,7 +110,8 @@ struct AnnulusBackground {
 inline constexpr std::size_t kFewestAnnulusPixels = 12;
 
 /// Uses the pixels that are finite and without any flag.
+/// @param clip  sigma from the median beyond which pixels are left out; infinity: the plain median.
 [[nodiscard]] AnnulusBackground annulus_background(const Frame& frame, std::size_t region, PixelPosition centre,
-                                                   double inner, double outer);
+                                                   double inner, double outer, double clip = 3.0);
 
 }  // namespace astroid

@@ -3,12 +3,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "astroid/core/fits_card.hpp"
 #include "astroid/core/frame.hpp"
 #include "astroid/core/geometry.hpp"
 #include "astroid/core/mission.hpp"
@@ -40,6 +42,12 @@ struct SourceMeasurement {
   double snr = 0.0;
   double chi2 = 0.0;        ///< per degree of freedom, of the PSF alone in the pixels used; NaN without a PSF
   std::uint32_t flags = 0;  ///< measurement_flag bits
+  static constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+  double position_err = kUnknown;  ///< px, along each axis, of stars that were found
+  /// By how many magnitudes the star would be brighter with the light of the known neighbours that was taken out of its
+  /// flux, or that is in it where nothing is taken out.
+  double crowding = kUnknown;
+  double sharpness = kUnknown;  ///< share of the flux in its pixel over that of a star, less 1: a cosmic ray is > 0
 };
 
 struct ImagePhotometrySettings {
@@ -52,8 +60,10 @@ struct ImagePhotometrySettings {
   Adu known_background;  ///< counts per pixel, bias included; for BackgroundMethod::kKnown
   Pixels annulus_inner{5.0};
   Pixels annulus_outer{8.0};
+  double annulus_clip = 3.0;  ///< sigma; infinity: the plain median
   MeshSettings mesh;
-  Magnitude zero_point{0.0};  ///< that gives one detected e-/s; 0: instrumental magnitudes
+  std::shared_ptr<const BackgroundMap> map;  ///< instead of one made with `mesh`
+  Magnitude zero_point{0.0};                 ///< that gives one detected e-/s; 0: instrumental magnitudes
 };
 
 /// Measures every source on region 0 of a frame.
@@ -74,9 +84,15 @@ std::vector<SourceMeasurement> measure_image(const Frame& frame, const SkyProjec
                                              std::span<const SourceRequest> sources,
                                              const ImagePhotometrySettings& settings);
 
-/// Writes photometry/sources.csv: id,x,y,ra,dec,flux,flux_err,mag,mag_err,background,snr,chi2,flags.
+/// Writes photometry/sources.csv: id,x,y,ra,dec,flux,flux_err,mag,mag_err,background,snr,chi2,flags, and where any
+/// source has them position_err,crowding,sharpness.
 /// @throws EnvironmentError when the file cannot be written.
 void write_sources(const std::filesystem::path& path, std::span<const SourceMeasurement> sources);
+
+/// The same as a binary table SOURCES of a FITS file, with `cards` and lines of history in its header.
+/// @throws EnvironmentError when the file cannot be written.
+void write_sources_fits(const std::filesystem::path& path, std::span<const SourceMeasurement> sources,
+                        std::span<const FitsCard> cards, std::span<const std::string> history);
 
 /// What the user knows better than the header.
 struct FrameReadOptions {
@@ -97,6 +113,7 @@ struct ImageFile {
   Frame frame;                       ///< one region, from (0, 0)
   std::optional<SkyProjection> sky;  ///< coordinates, where the header has usable ones
   std::vector<std::string> notes;    ///< what had to be assumed, one sentence each, for the user
+  bool gain_assumed = false;         ///< neither the header nor the options say it
 };
 
 /// Reads an image and the keywords that photometry needs.
@@ -104,8 +121,9 @@ struct ImageFile {
 /// Gain: EGAIN, GAIN, CCDGAIN, ATODGAIN, GAINEFF, GAIN1, else 1 e-/ADU; an image with BUNIT of electrons has gain 1,
 /// one of electrons per second its exposure time. Readout noise (e-): RDNOISE, READNOIS, RON, READNOISE, RDNOISE1,
 /// RDNOIS1, else 0. Exposure time (s): EXPTIME, EXPOSURE, ITIME, INT_TIME, else 1. Saturation (ADU): SATURATE,
-/// SATLEVEL, else the largest number of an integer image. Pixels that are not finite get pixel_flag::kBad, those at or
-/// above the saturation kAdcSaturated.
+/// SATLEVEL, else the largest number of an integer image. Bias (ADU), on top of which light and its noise are: the mean
+/// of PRESCAN extensions, else BIAS where its comment gives the unit [adu], else 0. Pixels that are not finite get
+/// pixel_flag::kBad, those at or above the saturation kAdcSaturated.
 /// @throws InputError naming the file and what is wrong; EnvironmentError when it cannot be read.
 ImageFile read_frame(const std::filesystem::path& path, const FrameReadOptions& options = {});
 

@@ -59,6 +59,7 @@ struct LightCurveHeader {
   std::vector<int> group{};          ///< of each camera, from 0; empty: all cameras are alike
   std::vector<double> stagger{};     ///< s, of each camera after the start of a cycle; empty: none
   bool is_corrected = false;         ///< for the attitude, which the file tells beside (with_attitude())
+  bool has_responses = false;        ///< LightCurveStar::response holds for all exposures: masks are not refreshed
   double line_time = 0.0;            ///< s, by which a row is exposed later than the one below; 0: all at once
 };
 

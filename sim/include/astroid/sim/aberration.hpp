@@ -4,6 +4,7 @@
 #include <array>
 
 #include "astroid/core/geometry.hpp"
+#include "astroid/core/mission.hpp"
 #include "astroid/core/units.hpp"
 #include "astroid/core/wcs.hpp"
 
@@ -20,6 +21,9 @@ using Velocity = std::array<double, 3>;
 /// and its centre of mass (test: Aberration.VelocityIsTheDerivativeOfAKeplerOrbit)
 /// @source Standish1992
 Velocity spacecraft_velocity(double mjd);
+
+/// How that has changed since the start of a run, to which catalogued places belong.  @param time  since the start
+Velocity velocity_since_start(const SimulationSettings& simulation, Seconds time);
 
 /// Displacement of a star on the detector by one unit of velocity along each axis of ICRS; px.
 struct AberrationJacobian {

@@ -99,6 +99,9 @@ struct EffectNeed {
       0.0;  ///< of any target's flux at the longest reported time bin with all cameras, relative to its variance
   /// How long the conditions it sets may be taken as constant without moving a flux beyond its tolerance.
   Seconds steady{std::numeric_limits<double>::infinity()};
+  /// Where all that those conditions do is to move stars smoothly: how, per second. The image may then be a polynomial
+  /// in time, and they need not be constant.
+  SlowMotion motion{};
 };
 
 /// What rendering a star takes.

@@ -16,18 +16,19 @@
 
 namespace astroid {
 
-/// Renders the noiseless image at one attitude.
-using RenderAt = std::function<Plane<double, unit::ExpectedElectrons>(const Attitude&)>;
+/// Renders the noiseless image at one attitude and time of the epoch.
+using RenderAt = std::function<Plane<double, unit::ExpectedElectrons>(const MotionPoint&)>;
 
-/// The maps of one cell of attitudes: the image is base + sum of map × term.
+/// The maps of one cell of attitudes in one epoch: the image is base + sum of map × term.
 struct MovingImageCell {
   Plane<double, unit::ExpectedElectrons> base;
   std::vector<Plane<float, unit::ExpectedElectrons>> maps;  ///< of terms 1, 2, …
 };
 
 /// Weights of the maps for an exposure with these attitudes: the means of the terms but the first, about the centre of
-/// the cell that their mean lies in.
-std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::span<const Attitude> attitudes);
+/// the cell that their mean lies in.  @param time  of the exposure, -1 … 1 over the epoch
+std::vector<float> exposure_weights(const AttitudePolynomial& polynomial, std::span<const Attitude> attitudes,
+                                    double time = 0.0);
 
 /// Makes cells where attitudes lead, and keeps the latest ones. @thread safe
 class MovingImage {

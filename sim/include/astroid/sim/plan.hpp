@@ -20,7 +20,7 @@ enum class JitterTreatment : std::uint8_t {
   kShift,       ///< stars at their mean position of the exposure
   kBroadened,   ///< the same, and the PSF broadened by the motion about it
   kSubSteps,    ///< the mean of the images at every step of the exposure
-  kPolynomial,  ///< the same mean, of an image that is a polynomial in the attitude: a sum of fixed maps
+  kPolynomial,  ///< the same mean, of an image that is a polynomial in attitude and time: a sum of fixed maps
 };
 std::string_view to_string(JitterTreatment treatment);
 
@@ -76,10 +76,13 @@ struct Plan {
   [[nodiscard]] std::int64_t epoch(std::int64_t exposure) const {
     return epoch_exposures > 0 ? exposure / epoch_exposures : 0;
   }
+  /// Where in its epoch an exposure lies, -1 … 1 over it: of its middle, as the conditions and the image take it. 0
+  /// where all exposures of an epoch share them.
+  [[nodiscard]] double place_in_epoch(std::int64_t exposure) const;
 };
 
-/// What the effects that run make of the conditions in an epoch, taken at its middle.
-Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch);
+/// What the effects that run make of the conditions in an epoch.  @param place  -1 … 1 over it
+Conditions conditions_of(const Plan& plan, const Scene& scene, std::int64_t epoch, double place = 0.0);
 
 /// Decides everything from the scene and the accuracy asked for.
 /// @param costs                 of this machine, for the predicted times.

@@ -34,7 +34,8 @@ PixelResponse common_response(const IntraPixelSettings& settings);
 /// What the detector records of a star: the PSF weighted with the common response within the pixel, as the plan's
 /// renderer wants it. Mostly `optical` itself.
 /// @param optical  of make_psf().  @throws InputError, EnvironmentError for a table
-std::shared_ptr<const PixelPsf> make_recorded_psf(const Mission& mission, std::shared_ptr<const PixelPsf> optical);
+std::shared_ptr<const PixelPsf> make_recorded_psf(const Mission& mission, const PsfAccuracy& accuracy,
+                                                  std::shared_ptr<const PixelPsf> optical);
 
 /// The sub-pixel renderer of a mission, for light in the cells of the response if there is one.
 /// @param accuracy  of a star's flux, relative; for a Gaussian, which is cheap to make exact, `tight` instead

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -20,15 +21,19 @@ namespace astroid {
 ///
 /// Either the spacecraft tells it, with an error of Photometry/Knowledge/Attitude that all cameras share and that is
 /// new in every exposure, or each camera measures it by its own bright targets.
-/// @source F130, F131
+/// @source F130, F131, F155
 class AttitudeCorrection {
  public:
-  /// @param estimators  of the targets.  @throws InputError when there is no star to measure the attitude by.
-  AttitudeCorrection(const Scene& scene, const GroundModel& model, std::span<const StarEstimator> estimators);
+  /// @param estimators  of the targets.
+  /// @param origin      attitude for which the model has the places of the stars; others are relative to it.
+  /// @throws InputError when there is no star to measure the attitude by.
+  AttitudeCorrection(const Scene& scene, const GroundModel& model, std::span<const StarEstimator> estimators,
+                     const Attitude& origin);
 
   [[nodiscard]] bool is_measured() const { return sensor_.has_value(); }
   /// @param truth       mean attitude of the exposure.
   /// @param calibrated  its frame, as fluxes are measured in it.
+  /// @returns           relative to the origin.
   [[nodiscard]] Attitude attitude(std::int64_t exposure, const Attitude& truth, const Frame& calibrated) const;
 
   /// Of each target.
@@ -44,6 +49,15 @@ class AttitudeCorrection {
   AttitudeCovariance error_;
   RandomStream stream_;
   double known_rms_;  // arcsec
+  Attitude origin_;
 };
+
+/// A correction that holds from an exposure on, as the estimators do that it belongs to.
+struct CorrectionStretch {
+  std::int64_t first = 0;
+  std::shared_ptr<const AttitudeCorrection> correction;
+};
+/// @param stretches  ascending, the first from exposure 0 on.
+const AttitudeCorrection& correction_at(std::span<const CorrectionStretch> stretches, std::int64_t exposure);
 
 }  // namespace astroid

@@ -54,13 +54,23 @@ struct StreamResult {
   std::int64_t images_written = 0;
 };
 
+/// Estimators that hold from an exposure on.
+struct EstimatorRefresh {
+  std::int64_t first = 0;                 ///< exposure
+  std::vector<StarEstimator> estimators;  ///< of the same targets
+};
+
 /// Cameras that see the same: what, how, and measured by what.
 struct StreamGroup {
   std::shared_ptr<const Scene> scene;
   std::shared_ptr<const Plan> plan;
-  std::span<const StarEstimator> estimators;               ///< of the targets, which are the same stars in every group
-  double share = 1.0;                                      ///< of the group in all cameras
-  std::shared_ptr<const AttitudeCorrection> correction{};  ///< of the targets' fluxes; null: none
+  std::span<const StarEstimator> estimators;  ///< of the targets, which are the same stars in every group
+  double share = 1.0;                         ///< of the group in all cameras
+  /// Those that follow `estimators`, which hold from exposure 0 on; ascending. Fluxes are relative to what the
+  /// estimators of their time expect.
+  std::span<const EstimatorRefresh> refreshes{};
+  /// Of the targets' fluxes; empty: none.
+  std::span<const CorrectionStretch> corrections{};
 };
 
 /// Runs all exposures of all simulated cameras, numbered through the groups by group_of_camera().

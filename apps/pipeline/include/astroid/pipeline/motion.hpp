@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
 #include <span>
 #include <vector>
 
@@ -36,9 +35,9 @@ class AttitudeSharing {
 
 /// The error of the attitude that jitter correction uses, as a motion of a target; nothing of it averages out within an
 /// exposure. Shape as of_target(): what cameras of different groups share is theirs only where the spacecraft tells it.
-/// @param corrections  of each group, none of them null.
+/// @param corrections  of each group, none of them empty; the first stretch of each is taken for all.
 std::vector<CrossMotion> attitude_error_motion(const PreparedRun& run,
-                                               std::span<const std::shared_ptr<const AttitudeCorrection>> corrections,
+                                               std::span<const std::vector<CorrectionStretch>> corrections,
                                                std::size_t target);
 
 }  // namespace astroid

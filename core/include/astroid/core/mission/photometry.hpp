@@ -33,8 +33,9 @@ struct KnowledgeSettings {
 struct PhotometrySettings {
   PhotometryMethod method = PhotometryMethod::kMask;
   Pixels aperture_radius{3.0};
-  int mask_window = 6;     ///< side of the window in which masks may grow and PSF weights are, px
-  Pixels mask_reach{0.0};  ///< neighbours farther than this add nothing; 0: from the accuracy
+  int mask_window = 6;        ///< side of the window in which masks may grow and PSF weights are, px
+  Seconds mask_refresh{0.0};  ///< apertures, masks and weights are made anew for the stars' places this often; 0: never
+  Pixels mask_reach{0.0};     ///< neighbours farther than this add nothing; 0: from the accuracy
   BackgroundMethod background = BackgroundMethod::kLocal;
   Pixels annulus_inner{5.0}, annulus_outer{8.0};
   int mesh = 64;

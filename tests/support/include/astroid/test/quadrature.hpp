@@ -23,6 +23,10 @@ long double integrate_pixel(const Density& density, PixelPosition star, int x, i
 
 /// Circular Gaussian of unit flux.
 Density gaussian_density(long double sigma);
+/// F54, of unit flux on infinite support.
+Density moffat_density(long double fwhm, long double beta);
+/// F55, likewise.
+Density airy_density(long double lambda_over_d, long double obscuration);
 
 /// An integral and how well it is known.
 struct Integral {
@@ -50,6 +54,8 @@ struct SurfaceBrightness {
 
 /// A PSF given by its formula, smooth everywhere.
 SurfaceBrightness smooth_brightness(Density density);
+/// The same faded out towards `reach` px from the star (F120), and nothing beyond.
+SurfaceBrightness faded_brightness(Density density, long double reach);
 /// What a PSF table means: its running integral, known at the edges of the samples, is a natural cubic spline along
 /// both axes, and the surface brightness is its mixed derivative, 0 outside the table. Written down again from that
 /// definition in 80-bit arithmetic, by second derivatives instead of B-splines.
