@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <iterator>
 
+#include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/digitise.hpp"
 #include "astroid/core/distributions.hpp"
 #include "astroid/core/error.hpp"
 
@@ -19,13 +22,34 @@ constexpr std::size_t kMostGuides = 200;
 /// Standard deviations that the attitude may be off.
 constexpr double kReach = 4.0;
 
-/// The brightest targets that no exposure saturates.
-std::vector<GuideStar> guide_stars(const Scene& scene, std::span<const StarEstimator> estimators) {
-  constexpr std::uint32_t kUnfit = measurement_flag::kSaturated | measurement_flag::kEdge |
-                                   measurement_flag::kBadPixel | measurement_flag::kOutside | measurement_flag::kNoFlux;
+/// Share of what saturates a pixel that a guide star may put into its brightest: jitter and noise need the rest.
+constexpr double kUnsaturated = 0.8;
+
+/// What saturates a pixel, e- above the bias and the mean background.
+double saturation(const Mission& mission) {
+  const double converted = (adc_top(mission.ccd.adc_bits) - mission.ccd.bias.value()) * mission.ccd.gain.value();
+  return std::min(mission.ccd.full_well.value(), converted) - expected_pixel_noise(mission).background;
+}
+
+/// Light of a star in its brightest pixel, e-.
+double brightest_pixel(const FieldStar& star, const PixelPsf& psf) {
+  constexpr int kAround = 3;
+  const auto first = [](double centre) { return static_cast<int>(std::lround(centre)) - kAround / 2; };
+  std::array<double, kAround * kAround> fractions{};
+  psf.integrate(star.position, {first(star.position.x), first(star.position.y), kAround, kAround}, fractions);
+  return star.electrons * *std::ranges::max_element(fractions);
+}
+
+/// The brightest targets that do not saturate.
+std::vector<GuideStar> guide_stars(const Scene& scene, const GroundModel& model,
+                                   std::span<const StarEstimator> estimators) {
+  constexpr std::uint32_t kUnfit = measurement_flag::kEdge | measurement_flag::kBadPixel | measurement_flag::kOutside |
+                                   measurement_flag::kNoFlux;
+  const double limit = kUnsaturated * saturation(scene.mission());
   std::vector<std::size_t> stars;
   for (const StarEstimator& estimator : estimators)
-    if ((estimator.flags & kUnfit) == 0) stars.push_back(estimator.star);
+    if ((estimator.flags & kUnfit) == 0 && brightest_pixel(model.stars[estimator.star], *model.psf) < limit)
+      stars.push_back(estimator.star);
   std::ranges::stable_sort(stars, std::ranges::greater(), [&](std::size_t s) { return scene.stars()[s].electrons; });
   stars.resize(std::min(stars.size(), kMostGuides));
   std::vector<GuideStar> guides;
@@ -56,7 +80,7 @@ AttitudeCorrection::AttitudeCorrection(const Scene& scene, const GroundModel& mo
     error_ = {.yaw_yaw = variance, .pitch_pitch = variance, .roll_roll = variance};
     return;
   }
-  sensor_.emplace(*scene.layout(), model, scene.mission().photometry, guide_stars(scene, estimators), reach_of(scene));
+  sensor_.emplace(*scene.layout(), model, scene.mission().photometry, guide_stars(scene, model, estimators), reach_of(scene));
   if (sensor_->guides() == 0 && !estimators.empty())
     throw InputError(Problem{.parameter = "Photometry/JitterCorrection",
                              .value = "centroids",
