@@ -72,7 +72,8 @@ AttitudeCorrection::AttitudeCorrection(const Scene& scene, const GroundModel& mo
                                        std::span<const StarEstimator> estimators, const Attitude& origin)
     : stream_(make_stream(scene.mission().simulation.seed, kKnowledgeOfAttitude, 0, 0)),
       known_rms_(scene.mission().photometry.knowledge.attitude.value()),
-      origin_(origin) {
+      origin_(origin),
+      first_(scene.mission_number(0)) {
   for (const StarEstimator& estimator : estimators)
     responses_.push_back(attitude_response(estimator, scene.stars()[estimator.star].motion));
   if (scene.mission().photometry.jitter_correction == JitterCorrection::kKnown) {
@@ -93,7 +94,7 @@ Attitude AttitudeCorrection::attitude(std::int64_t exposure, const Attitude& tru
   if (sensor_) return sensor_->measure(calibrated).mean;
   const auto error = [&](std::uint32_t axis) {
     if (known_rms_ == 0.0) return 0.0;
-    return known_rms_ * normal_at_step(stream_, {.step = static_cast<std::uint64_t>(exposure), .axis = axis});
+    return known_rms_ * normal_at_step(stream_, {.step = static_cast<std::uint64_t>(first_ + exposure), .axis = axis});
   };
   return {truth.yaw - origin_.yaw + error(0), truth.pitch - origin_.pitch + error(1),
           truth.roll - origin_.roll + error(2)};

@@ -40,7 +40,7 @@ class AttitudeCorrection {
   [[nodiscard]] std::span<const AttitudeResponse> responses() const { return responses_; }
   /// Error of attitude(): of each camera its own where it is measured, else the same in all of them.
   [[nodiscard]] const AttitudeCovariance& error() const { return error_; }
-  /// For the plan.
+  /// For people.
   [[nodiscard]] std::string description() const;
 
  private:
@@ -50,6 +50,7 @@ class AttitudeCorrection {
   RandomStream stream_;
   double known_rms_;  // arcsec
   Attitude origin_;
+  std::int64_t first_;  // exposure of the run, counted from the start of the mission
 };
 
 /// A correction that holds from an exposure on, as the estimators do that it belongs to.
