@@ -224,6 +224,10 @@ void add_uncorrected(TargetMetrics& target, const SeriesSummary& measured) {
   target.nsr_1h_uncorrected = measured.bin_means.scaled(kPpm * all_light_per_target(target));
 }
 
+void add_cotrended(TargetMetrics& target, const NoiseEstimate& bin_means) {
+  target.nsr_1h_cotrended = bin_means.scaled(kPpm * all_light_per_target(target));
+}
+
 bool is_clean(const TargetMetrics& target) {
   return (target.flags & kUnclean) == 0;
 }

@@ -134,6 +134,14 @@ std::vector<Parameter> photometry_parameters() {
                                                           JitterCorrection::kCentroids};
              m.photometry.jitter_correction = kCorrections[v.choice];
            }},
+      {.path = "Photometry/Cotrending",
+       .kind = Kind::kInteger,
+       .range = from_to(0, 16),
+       .fallback = "0",
+       .meaning = "So many trends that light curves have in common are taken out of their bin means, at most: those that "
+                  "noise alone does not explain; 0: none. Light curves themselves keep them.",
+       .example = "4",
+       .assign = [](Mission& m, const Value& v) { m.photometry.cotrending = static_cast<int>(v.integer); }},
       {.path = "Photometry/Knowledge/Attitude",
        .unit = "arcsec",
        .range = from_to(0, 3600),

@@ -107,13 +107,15 @@ StreamResult read_stream(const std::filesystem::path& file, const Scene& scene, 
     }
   }
   SeriesStatistics statistics(targets,
-                              std::max<std::int64_t>(2, static_cast<std::int64_t>(scene.summary().exposures_per_bin)));
+                              std::max<std::int64_t>(2, static_cast<std::int64_t>(scene.summary().exposures_per_bin)),
+                              mission.photometry.cotrending > 0);
   std::vector<float> deviation(static_cast<std::size_t>(mission.simulation.exposures));
   for (std::size_t t = 0; t < targets; ++t) {
     fits.read_pixels(*curves, static_cast<std::int64_t>(t) * mission.simulation.exposures, deviation);
     statistics.add(t, 0, deviation);
   }
   result.series = statistics.summaries();
+  result.bin_means = all_bin_means(statistics, mission.simulation.exposures);
   if (!ground.corrections.front().empty())
     result.measured = measured_series(file, ground, statistics.exposures_per_bin());
   return result;

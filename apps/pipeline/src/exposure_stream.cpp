@@ -288,8 +288,8 @@ StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamO
     own_flags.push_back(inputs[group].own_flags);
     if (!inputs[group].corrections.empty()) corrections.push_back(inputs[group].corrections);
   }
-  SeriesStage series(std::move(own_flags), std::move(corrections), per_bin, static_cast<std::size_t>(length),
-                     light_curves.get());
+  SeriesStage series(std::move(own_flags), std::move(corrections), per_bin, mission.photometry.cotrending > 0,
+                     static_cast<std::size_t>(length), light_curves.get());
   Stream stream({.simulators = simulators, .group_of = group_of, .groups = inputs, .progress = options.progress},
                 series, threads, length, batch);
   result.timings.prepare = seconds_since(begin);
@@ -305,6 +305,7 @@ StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamO
   }
 
   result.series = series.summaries();
+  result.bin_means = series.bin_means(exposures);
   result.measured = series.measured_summaries();
   result.flags = series.flags();
   result.flagged_share = series.flagged_share();

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "astroid/analysis/contamination.hpp"
 #include "astroid/analysis/group_mean.hpp"
@@ -20,6 +21,7 @@
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run_record.hpp"
 #include "astroid/reports/report.hpp"
+#include "cotrend_run.hpp"
 #include "folders.hpp"
 
 namespace astroid {
@@ -142,6 +144,18 @@ std::vector<std::string> jitter_correction_notes(const MeasuredRun& run, std::sp
   return {text};
 }
 
+/// Takes common trends out of the bin means, where the mission asks for it.  @returns what was done
+std::optional<std::string> cotrend(const MeasuredRun& run, std::span<TargetMetrics> targets,
+                                   const std::filesystem::path& file) {
+  const Mission& mission = run.prepared.scene().mission();
+  if (run.stream.bin_means.empty()) return std::nullopt;
+  const Cotrending cotrending(run.stream.bin_means, run.stream.series, targets,
+                              static_cast<std::size_t>(mission.photometry.cotrending));
+  for (std::size_t t = 0; t < targets.size(); ++t) add_cotrended(targets[t], cotrending.left(t));
+  cotrending.write(file, targets, mission.analysis.bin.value());
+  return cotrending_note(cotrending, targets);
+}
+
 std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
   std::vector<std::string> warnings = run.prepared.notes;
   for (const PreparedGroup& group : run.prepared.groups)
@@ -201,8 +215,9 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
 ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run) {
   const Mission& mission = run.prepared.scene().mission();
   const RunSetup setup = run_setup(mission);
-  const std::vector<TargetMetrics> targets = target_metrics(run, setup);
+  std::vector<TargetMetrics> targets = target_metrics(run, setup);
   create_folder(folder / "photometry");
+  const std::optional<std::string> cotrended = cotrend(run, targets, folder / "photometry" / "cotrending.fits");
   write_mean_sources(folder / "photometry" / "sources.csv", run, targets);
   const std::vector<ContaminationRow> contamination = contamination_rows(run, targets);
   const std::vector<BudgetRow> budget = budget_rows(run);
@@ -228,6 +243,7 @@ ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& r
   input.provenance.emplace_back("seed", fmt::format("{}", mission.simulation.seed));
   input.warnings = warnings_of(run, targets);
   for (const std::string& note : jitter_correction_notes(run, targets)) input.warnings.push_back(note);
+  if (cotrended) input.warnings.push_back(*cotrended);
   if (run.stream.first_frame.size() > 0) {
     input.image = run.stream.first_frame.view();
     input.image_caption =

@@ -15,20 +15,21 @@ constexpr std::size_t kStarsPerTask = 64;  // so that their series in a block fi
 
 SeriesStage::SeriesStage(std::vector<std::vector<std::uint32_t>> own_flags,
                          std::vector<std::span<const CorrectionStretch>> corrections, std::int64_t exposures_per_bin,
-                         std::size_t longest_block, LightCurveWriter* light_curves)
+                         bool keep_bin_means, std::size_t longest_block, LightCurveWriter* light_curves)
     : own_flags_(std::move(own_flags)),
       corrections_(std::move(corrections)),
       cameras_(own_flags_.size()),
       targets_(own_flags_.front().size()),
       light_curves_(light_curves),
       longest_block_(longest_block),
-      result_(make_mean(targets_, exposures_per_bin)),
-      measured_(make_mean(corrections_.empty() ? 0 : targets_, exposures_per_bin)),
+      result_(make_mean(targets_, exposures_per_bin, keep_bin_means)),
+      measured_(make_mean(corrections_.empty() ? 0 : targets_, exposures_per_bin, false)),
       flags_(targets_, 0),
       flagged_(targets_, 0) {}
 
-SeriesStage::Mean SeriesStage::make_mean(std::size_t targets, std::int64_t exposures_per_bin) const {
-  return {.statistics = SeriesStatistics(targets, exposures_per_bin),
+SeriesStage::Mean SeriesStage::make_mean(std::size_t targets, std::int64_t exposures_per_bin,
+                                          bool keep_bin_means) const {
+  return {.statistics = SeriesStatistics(targets, exposures_per_bin, keep_bin_means),
           .sums = std::vector<double>(cameras_ > 1 ? longest_block_ * targets : 0)};
 }
 

@@ -24,7 +24,7 @@ class SeriesStage {
   /// @param light_curves  the file; null: none.
   SeriesStage(std::vector<std::vector<std::uint32_t>> own_flags,
               std::vector<std::span<const CorrectionStretch>> corrections, std::int64_t exposures_per_bin,
-              std::size_t longest_block, LightCurveWriter* light_curves);
+              bool keep_bin_means, std::size_t longest_block, LightCurveWriter* light_curves);
 
   /// Begins a block; its tasks follow, in any order and several at a time.
   void begin(const FluxBlock& block);
@@ -35,6 +35,10 @@ class SeriesStage {
   void end(const FluxBlock& block, std::vector<LightCurveFlag>& flags);
 
   [[nodiscard]] std::vector<SeriesSummary> summaries() const { return result_.statistics.summaries(); }
+  /// Of the first bins of each target, [target][bin], where they are kept.
+  [[nodiscard]] std::vector<float> bin_means(std::int64_t exposures) const {
+    return all_bin_means(result_.statistics, exposures);
+  }
   /// Before jitter correction; empty without one.
   [[nodiscard]] std::vector<SeriesSummary> measured_summaries() const;
   /// measurement_flag bits seen in any exposure, of each target.
@@ -48,7 +52,7 @@ class SeriesStage {
     SeriesStatistics statistics;
     std::vector<double> sums;  // of the cameras so far, [target][exposure]
   };
-  [[nodiscard]] Mean make_mean(std::size_t targets, std::int64_t exposures_per_bin) const;
+  [[nodiscard]] Mean make_mean(std::size_t targets, std::int64_t exposures_per_bin, bool keep_bin_means) const;
   void add(Mean& mean, std::size_t target, const FluxBlock& block, std::span<const float> series) const;
   void correct(std::size_t target, const FluxBlock& block, std::span<float> series) const;
 

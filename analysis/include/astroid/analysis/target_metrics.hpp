@@ -129,6 +129,7 @@ struct TargetMetrics {
   NoiseEstimate nsr_1h_within_scaled;    ///< the same scaled to N cameras
   NoiseEstimate nsr_1h_scaled;
   NoiseEstimate nsr_1h_uncorrected;  ///< as nsr_1h_measured, before jitter correction; nothing without one
+  NoiseEstimate nsr_1h_cotrended;    ///< as nsr_1h_measured, without what targets have in common; nothing unless asked for
   std::int64_t bins = 0;
 };
 
@@ -147,6 +148,9 @@ void add_measurement(TargetMetrics& target, const SeriesSummary& series, double 
 
 /// Adds the noise that was measured before jitter correction, after add_measurement().
 void add_uncorrected(TargetMetrics& target, const SeriesSummary& measured);
+
+/// Adds the noise that cotrending leaves, after add_measurement().  @param bin_means  of deviations, with its freedom.
+void add_cotrended(TargetMetrics& target, const NoiseEstimate& bin_means);
 
 /// A noise of n simulated cameras as it would be with N: only what cameras do not share falls.
 /// @param common  the shared part, in the unit of `simulated`; a measured noise below it is all taken as shared.

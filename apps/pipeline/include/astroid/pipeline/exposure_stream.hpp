@@ -43,6 +43,7 @@ struct StreamTimings {
 struct StreamResult {
   std::vector<SeriesSummary> series;    ///< of each target, mean of the simulated cameras
   std::vector<SeriesSummary> measured;  ///< the same before jitter correction; empty without one
+  std::vector<float> bin_means;         ///< of each target, [target][bin], where they are cotrended; else empty
   std::vector<double> reference;        ///< flux the series are relative to, e- per exposure, mean of the cameras
   std::vector<std::uint32_t> flags;     ///< measurement_flag bits seen in any exposure, of each target
   std::vector<double> flagged_share;    ///< share of exposures of a target with any flag

@@ -42,6 +42,7 @@ struct PhotometrySettings {
   Magnitude target_limit{99.0};  ///< stars brighter than this are targets
   CalibrationSettings calibration;
   JitterCorrection jitter_correction = JitterCorrection::kNone;
+  int cotrending = 0;  ///< common trends that are taken out of bin means, at most
   KnowledgeSettings knowledge;
 
   friend bool operator==(const PhotometrySettings&, const PhotometrySettings&) = default;
