@@ -113,6 +113,20 @@ int run_command_line(int argc, char** argv) {
       ->type_name("MAG");
   sub->callback([&] { command = [&] { return focal_plane(focal_plane_options); }; });
 
+  TradeoffCommand tradeoff_options;
+  tradeoff_options.run.run.command_line.assign(argv, argv + argc);
+  sub = app.add_subcommand("tradeoff", "what accuracy costs in time, measured for your own scene, and what to choose");
+  add_configuration(sub, tradeoff_options.run.configuration);
+  add_run_folder(sub, tradeoff_options.run.run, "out/tradeoff");
+  sub->add_option("--exposures", tradeoff_options.exposures, "that methods of photometry are compared on")
+      ->check(CLI::Range(2, 1000000))
+      ->capture_default_str();
+  sub->add_option("--seconds", tradeoff_options.seconds, "CPU time of each timing")
+      ->type_name("S")
+      ->check(CLI::Range(0.001, 1000.0))
+      ->capture_default_str();
+  sub->callback([&] { command = [&] { return tradeoff(tradeoff_options); }; });
+
   PhotometryOptions photometry_options;
   sub = app.add_subcommand("photometry", "fluxes of stars in any FITS images, found there or given by a catalogue");
   sub->add_option("IMAGE", photometry_options.images, "FITS images")->required();

@@ -173,6 +173,28 @@ double FluxSpline::flux(PixelPosition lower, PixelPosition upper) const {
   return strip(y_edge(upper.y)) - strip(y_edge(lower.y));
 }
 
+double FluxSpline::density(PixelPosition offset) const {
+  const double u = centre_x_ + offset.x * samples_per_pixel_;
+  const double v = centre_y_ + offset.y * samples_per_pixel_;
+  const auto end_x = static_cast<double>(nx_);
+  const auto end_y = static_cast<double>(ny_);
+  if (!(u >= 0.0 && u < end_x && v >= 0.0 && v < end_y)) return 0.0;
+  // Derivatives of the weights of edge().
+  const auto slopes = [](double t) {
+    const double s = 1.0 - t;
+    return std::array<double, 4>{-0.5 * s * s, 0.5 * t * (3.0 * t - 4.0), 0.5 * s * (4.0 - 3.0 * s), 0.5 * t * t};
+  };
+  const double column = std::floor(u);
+  const double row = std::floor(v);
+  const std::array<double, 4> along_x = slopes(u - column);
+  const std::array<double, 4> along_y = slopes(v - row);
+  const double* from = &coefficients_[static_cast<std::size_t>(row) * (nx_ + 3) + static_cast<std::size_t>(column)];
+  double sum = 0.0;
+  for (std::size_t k = 0; k < 4; ++k, from += nx_ + 3)
+    sum += along_y[k] * (along_x[0] * from[0] + along_x[1] * from[1] + along_x[2] * from[2] + along_x[3] * from[3]);
+  return sum * samples_per_pixel_ * samples_per_pixel_;
+}
+
 PixelPosition FluxSpline::lower() const {
   return {-centre_x_ / samples_per_pixel_, -centre_y_ / samples_per_pixel_};
 }

@@ -45,6 +45,9 @@ class FluxSpline {
   /// Flux in the rectangle [x0, x1] x [y0, y1], px from the PSF's origin.
   [[nodiscard]] double flux(PixelPosition lower, PixelPosition upper) const;
 
+  /// Surface brightness, 1/px²: the mixed derivative of C; 0 beside the table.
+  [[nodiscard]] double density(PixelPosition offset) const;
+
   /// Extent of the table, px from the PSF's origin.
   [[nodiscard]] PixelPosition lower() const;
   [[nodiscard]] PixelPosition upper() const;

@@ -32,6 +32,7 @@ std::vector<TableDoc> table_docs() {
       {"focal_plane.csv", "one sub-field (`astroid focal-plane`)", column_docs(focal_plane_columns())},
       {"focal_plane_map.csv", "one place on the detector (`astroid focal-plane`)",
        column_docs(focal_plane_map_columns())},
+      {"tradeoff.csv", "one setting (`astroid tradeoff`)", column_docs(tradeoff_columns())},
   };
 }
 

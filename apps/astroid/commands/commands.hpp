@@ -40,6 +40,13 @@ struct FocalPlaneCommand {
 };
 int focal_plane(const FocalPlaneCommand& options);
 
+struct TradeoffCommand {
+  AssessOptions run;
+  std::int64_t exposures = 64;
+  double seconds = 0.2;
+};
+int tradeoff(const TradeoffCommand& options);
+
 struct PlanOptions {
   ConfigurationOptions configuration;
   bool json = false;

@@ -12,6 +12,7 @@
 #include "astroid/analysis/noise_vs_magnitude.hpp"
 #include "astroid/analysis/recovery.hpp"
 #include "astroid/analysis/target_metrics.hpp"
+#include "astroid/analysis/tradeoff.hpp"
 #include "astroid/reports/column.hpp"
 
 namespace astroid {
@@ -31,6 +32,8 @@ struct FocalPlaneMapRow {
 };
 std::span<const Column<SubFieldMetrics>> focal_plane_columns();       ///< focal_plane.csv
 std::span<const Column<FocalPlaneMapRow>> focal_plane_map_columns();  ///< focal_plane_map.csv
+
+std::span<const Column<TradeoffRow>> tradeoff_columns();  ///< tradeoff.csv
 
 /// noise_budget.csv alone, for `astroid budget --analytic`. @throws EnvironmentError(path, cause)
 void write_noise_budget(const std::filesystem::path& path, std::span<const BudgetRow> rows);
