@@ -1,9 +1,9 @@
 #include "astroid/analysis/nsr_accumulator.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
-#include <cmath>
 
 #include "astroid/core/error.hpp"
 

@@ -138,8 +138,9 @@ std::vector<Parameter> photometry_parameters() {
        .kind = Kind::kInteger,
        .range = from_to(0, 16),
        .fallback = "0",
-       .meaning = "So many trends that light curves have in common are taken out of their bin means, at most: those that "
-                  "noise alone does not explain; 0: none. Light curves themselves keep them.",
+       .meaning =
+           "So many trends that light curves have in common are taken out of their bin means, at most: those that "
+           "noise alone does not explain; 0: none. Light curves themselves keep them.",
        .example = "4",
        .assign = [](Mission& m, const Value& v) { m.photometry.cotrending = static_cast<int>(v.integer); }},
       {.path = "Photometry/Knowledge/Attitude",

@@ -54,10 +54,8 @@ std::vector<SeriesSummary> measured_series(const std::filesystem::path& file, co
       const std::size_t group =
           header.group.empty() ? 0 : static_cast<std::size_t>(header.group[static_cast<std::size_t>(camera) - 1]);
       for (std::size_t k = 0; k < sum.size(); ++k) {
-        const AttitudeCorrection& correction =
-            correction_at(ground.corrections[group], static_cast<std::int64_t>(k));
-        sum[k] +=
-            with_attitude(curve.flux[k] / curve.star.reference - 1.0, correction.responses()[star], attitude[k]);
+        const AttitudeCorrection& correction = correction_at(ground.corrections[group], static_cast<std::int64_t>(k));
+        sum[k] += with_attitude(curve.flux[k] / curve.star.reference - 1.0, correction.responses()[star], attitude[k]);
       }
     }
     for (std::size_t k = 0; k < sum.size(); ++k) mean[k] = static_cast<float>(sum[k] / header.cameras);

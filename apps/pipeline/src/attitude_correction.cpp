@@ -43,8 +43,8 @@ double brightest_pixel(const FieldStar& star, const PixelPsf& psf) {
 /// The brightest targets that do not saturate.
 std::vector<GuideStar> guide_stars(const Scene& scene, const GroundModel& model,
                                    std::span<const StarEstimator> estimators) {
-  constexpr std::uint32_t kUnfit = measurement_flag::kEdge | measurement_flag::kBadPixel | measurement_flag::kOutside |
-                                   measurement_flag::kNoFlux;
+  constexpr std::uint32_t kUnfit =
+      measurement_flag::kEdge | measurement_flag::kBadPixel | measurement_flag::kOutside | measurement_flag::kNoFlux;
   const double limit = kUnsaturated * saturation(scene.mission());
   std::vector<std::size_t> stars;
   for (const StarEstimator& estimator : estimators)
@@ -81,7 +81,8 @@ AttitudeCorrection::AttitudeCorrection(const Scene& scene, const GroundModel& mo
     error_ = {.yaw_yaw = variance, .pitch_pitch = variance, .roll_roll = variance};
     return;
   }
-  sensor_.emplace(*scene.layout(), model, scene.mission().photometry, guide_stars(scene, model, estimators), reach_of(scene));
+  sensor_.emplace(*scene.layout(), model, scene.mission().photometry, guide_stars(scene, model, estimators),
+                  reach_of(scene));
   if (sensor_->guides() == 0 && !estimators.empty())
     throw InputError(Problem{.parameter = "Photometry/JitterCorrection",
                              .value = "centroids",
@@ -103,7 +104,8 @@ Attitude AttitudeCorrection::attitude(std::int64_t exposure, const Attitude& tru
 std::string AttitudeCorrection::description() const {
   if (!sensor_) return fmt::format("with the attitude that the spacecraft tells, {:.3g} arcsec rms off", known_rms_);
   return fmt::format(
-      "with the attitude measured in each image by {} stars, {:.3g}, {:.3g} and {:.3g} arcsec rms off in yaw, pitch and "
+      "with the attitude measured in each image by {} stars, {:.3g}, {:.3g} and {:.3g} arcsec rms off in yaw, pitch "
+      "and "
       "roll",
       sensor_->guides(), std::sqrt(error_.yaw_yaw), std::sqrt(error_.pitch_pitch), std::sqrt(error_.roll_roll));
 }

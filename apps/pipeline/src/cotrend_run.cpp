@@ -113,7 +113,8 @@ std::string cotrending_note(const Cotrending& cotrending, std::span<const Target
   return fmt::format(
       "bin means of {} targets have {} trend{} in common; without, the noise of the {} unsaturated targets would fall "
       "from {:.4g} to {:.4g} ppm (medians, simulated cameras)",
-      trends.references(), trends.trends(), trends.trends() == 1 ? "" : "s", before.size(), quantile(before, 0.5).value, quantile(after, 0.5).value);
+      trends.references(), trends.trends(), trends.trends() == 1 ? "" : "s", before.size(), quantile(before, 0.5).value,
+      quantile(after, 0.5).value);
 }
 
 }  // namespace astroid

@@ -32,8 +32,8 @@ class Cotrending {
 
  private:
   CommonTrends trends_;
-  std::vector<TrendFit> fits_;   // of each target
-  std::vector<double> mean_;     // deviation of each target over the run
+  std::vector<TrendFit> fits_;  // of each target
+  std::vector<double> mean_;    // deviation of each target over the run
 };
 
 /// What cotrending did, for the page.

@@ -205,8 +205,7 @@ std::vector<FieldStar> stars_at(const Scene& scene, std::int64_t exposure) {
   const SimulationSettings& simulation = scene.mission().simulation;
   const Seconds time = scene.mid_time(exposure);
   const Attitude trend = trend_at(scene, exposure);
-  const Velocity velocity =
-      scene.mission().satellite.aberration ? velocity_since_start(simulation, time) : Velocity{};
+  const Velocity velocity = scene.mission().satellite.aberration ? velocity_since_start(simulation, time) : Velocity{};
   std::vector<FieldStar> stars = field_stars(scene);
   for (std::size_t i = 0; i < stars.size(); ++i) {
     const SceneStar& star = scene.stars()[i];

@@ -201,7 +201,8 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
     if (is_corrected) {
       const MotionNoise error =
           mean_motion_noise(views, attitude_error_motion(run.prepared, run.ground.corrections, t), setup);
-      motion = after_correction(motion, error, run.ground.corrections.front().front().correction->is_measured(), setup.exposures_per_bin);
+      motion = after_correction(motion, error, run.ground.corrections.front().front().correction->is_measured(),
+                                setup.exposures_per_bin);
     }
     const PredictedNoise noise = predict_mean_noise(estimator, motion, setup);
     TargetMetrics target = predict_mean_target(mean_truth(stars, shares), estimator, noise, setup);

@@ -28,7 +28,7 @@ SeriesStage::SeriesStage(std::vector<std::vector<std::uint32_t>> own_flags,
       flagged_(targets_, 0) {}
 
 SeriesStage::Mean SeriesStage::make_mean(std::size_t targets, std::int64_t exposures_per_bin,
-                                          bool keep_bin_means) const {
+                                         bool keep_bin_means) const {
   return {.statistics = SeriesStatistics(targets, exposures_per_bin, keep_bin_means),
           .sums = std::vector<double>(cameras_ > 1 ? longest_block_ * targets : 0)};
 }

@@ -26,8 +26,10 @@ class CorrectedLightCurves : public testing::TestWithParam<const char*> {
 
 TEST_P(CorrectedLightCurves, AreTheSameForAnyNumberOfThreadsAndWhenAnalysedAgain) {
   const std::vector<std::string> settings{std::string("Photometry/JitterCorrection=") + GetParam(),
-                                          "Photometry/Knowledge/Attitude=0.01", "Simulation/Exposures=37",
-                                          "Telescope/SimulatedCameras=2", "Satellite/Drift/YawRate=720",
+                                          "Photometry/Knowledge/Attitude=0.01",
+                                          "Simulation/Exposures=37",
+                                          "Telescope/SimulatedCameras=2",
+                                          "Satellite/Drift/YawRate=720",
                                           "Photometry/MaskRefresh=0.003"};
   const std::filesystem::path one = assess("one", settings);
   EXPECT_GE(test::expect_same_products(one, assess("two", settings)), 10U);
@@ -50,8 +52,8 @@ INSTANTIATE_TEST_SUITE_P(Each, CorrectedLightCurves, testing::Values("known", "c
 
 TEST_F(CorrectedLightCurves, AgreeWithTheirPredictionBeforeAndAfter) {
   // Jitter twenty times PLATO's: much of the noise of bright stars.
-  const std::vector<std::string> jitter{"Simulation/Exposures=400", "Satellite/Jitter/Yaw=0.76",
-                                        "Satellite/Jitter/Pitch=0.76", "Satellite/Jitter/Roll=0.8",
+  const std::vector<std::string> jitter{"Simulation/Exposures=400",      "Satellite/Jitter/Yaw=0.76",
+                                        "Satellite/Jitter/Pitch=0.76",   "Satellite/Jitter/Roll=0.8",
                                         "Satellite/Jitter/Timescale=25", "CCD/PRNU=0"};
   std::vector<std::string> corrected = jitter;
   corrected.emplace_back("Photometry/JitterCorrection=centroids");

@@ -59,7 +59,8 @@ struct Variances {
 Variances exposure_variances(const Mission& mission, double electrons) {
   const PreparedRun run = prepare_run(mission, spread_stars(electrons));
   const GroundSegment ground = perfect_ground_segment(run);
-  const StreamResult result = stream_exposures(stream_groups(run, ground), {.threads = 0, .folder = {}, .progress = {}});
+  const StreamResult result =
+      stream_exposures(stream_groups(run, ground), {.threads = 0, .folder = {}, .progress = {}});
   EXPECT_EQ(result.measured.size(), static_cast<std::size_t>(kStars));
   const RunSetup setup = run_setup(mission);
   const AttitudeSharing attitude(run);
@@ -138,8 +139,7 @@ TEST(JitterCorrection, MeasuresTheAttitudeAsWellAsItSays) {
   (void)stream_exposures(stream_groups(run, ground), {.threads = 0, .folder = folder.path(), .progress = {}});
   const LightCurveReader reader((folder.path() / "photometry/lightcurves.fits").string());
   const std::vector<Attitude> measured = reader.attitudes(1);
-  const std::shared_ptr<const AttitudeSeries> truth =
-      make_attitude_series(run.scene(), *run.groups.front().plan);
+  const std::shared_ptr<const AttitudeSeries> truth = make_attitude_series(run.scene(), *run.groups.front().plan);
   ASSERT_EQ(measured.size(), static_cast<std::size_t>(kExposures));
   const AttitudeCovariance& error = ground.corrections.front().front().correction->error();
   double yaw = 0.0;

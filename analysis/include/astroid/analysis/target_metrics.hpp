@@ -129,7 +129,8 @@ struct TargetMetrics {
   NoiseEstimate nsr_1h_within_scaled;    ///< the same scaled to N cameras
   NoiseEstimate nsr_1h_scaled;
   NoiseEstimate nsr_1h_uncorrected;  ///< as nsr_1h_measured, before jitter correction; nothing without one
-  NoiseEstimate nsr_1h_cotrended;    ///< as nsr_1h_measured, without what targets have in common; nothing unless asked for
+  NoiseEstimate
+      nsr_1h_cotrended;  ///< as nsr_1h_measured, without what targets have in common; nothing unless asked for
   std::int64_t bins = 0;
 };
 
