@@ -13,7 +13,7 @@ namespace astroid {
 
 namespace {
 
-constexpr std::size_t kMostReferences = 1000;  // as many as find a trend of a tenth of their noise for certain
+constexpr std::size_t kMostReferences = 1000;  // the time to find trends grows as their number times bins squared
 
 CommonTrends find_trends(std::span<const float> bin_means, std::span<const SeriesSummary> series,
                          std::span<const TargetMetrics> targets, std::size_t most) {
