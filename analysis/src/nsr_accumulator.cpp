@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <utility>
 
 #include "astroid/core/error.hpp"
 
@@ -11,8 +13,8 @@ double SeriesStatistics::total(const std::array<double, kLanes>& lanes) {
   return ((lanes[0] + lanes[1]) + (lanes[2] + lanes[3])) + ((lanes[4] + lanes[5]) + (lanes[6] + lanes[7]));
 }
 
-SeriesStatistics::SeriesStatistics(std::size_t stars, std::int64_t exposures_per_bin)
-    : per_bin_(exposures_per_bin), stars_(stars) {
+SeriesStatistics::SeriesStatistics(std::size_t stars, std::int64_t exposures_per_bin, bool keep_bin_means)
+    : per_bin_(exposures_per_bin), keep_bin_means_(keep_bin_means), stars_(stars) {
   ASTROID_CHECK_LE(2, exposures_per_bin);
   c4_.assign(static_cast<std::size_t>(per_bin_) + 1, 0.0);
   for (std::int64_t n = 2; n <= per_bin_; ++n) c4_[static_cast<std::size_t>(n)] = c4(n);
@@ -36,6 +38,10 @@ void SeriesStatistics::close(Star& star) const {
   // A bin with fewer than half its exposures is not a measurement of the bin.
   if (2 * n < per_bin_ || n < 2) return;
   ++star.bins;
+  if (keep_bin_means_) {
+    star.bin_means.resize(static_cast<std::size_t>(star.open_bin), std::numeric_limits<float>::quiet_NaN());
+    star.bin_means.push_back(static_cast<float>(mean));
+  }
   star.within_dof += n - 1;
   star.deviation_sum += std::sqrt(m2 / static_cast<double>(n - 1)) / c4_[static_cast<std::size_t>(n)];
   const double weight = star.weight + count;
@@ -130,11 +136,30 @@ SeriesSummary SeriesStatistics::summary(std::size_t star_index) const {
   return out;
 }
 
+std::vector<float> SeriesStatistics::bin_means(std::size_t star_index, std::size_t bins) const {
+  if (!keep_bin_means_) return {};
+  Star star = stars_[star_index];
+  close(star);
+  star.bin_means.resize(bins, std::numeric_limits<float>::quiet_NaN());
+  return std::move(star.bin_means);
+}
+
 std::vector<SeriesSummary> SeriesStatistics::summaries() const {
   std::vector<SeriesSummary> out;
   out.reserve(stars_.size());
   for (std::size_t star = 0; star < stars_.size(); ++star) out.push_back(summary(star));
   return out;
+}
+
+std::vector<float> all_bin_means(const SeriesStatistics& statistics, std::int64_t exposures) {
+  const std::int64_t per_bin = statistics.exposures_per_bin();
+  const auto bins = static_cast<std::size_t>((exposures + per_bin - 1) / per_bin);
+  std::vector<float> all;
+  for (std::size_t star = 0; star < statistics.stars(); ++star) {
+    const std::vector<float> means = statistics.bin_means(star, bins);
+    all.insert(all.end(), means.begin(), means.end());
+  }
+  return all;
 }
 
 }  // namespace astroid

@@ -23,6 +23,12 @@ double square(double v) {
   return v * v;
 }
 
+/// From noise relative to all light in the aperture to noise relative to the target's.
+double all_light_per_target(const TargetMetrics& target) {
+  const double stars = target.flux_expected - target.flux_smeared;
+  return (target.flux_smeared != 0.0 ? target.flux_expected / stars : 1.0) / target.crowdsap;
+}
+
 }  // namespace
 
 RunSetup run_setup(const Mission& mission) {
@@ -47,6 +53,20 @@ double NoiseByCause::total() const {
 
 double NoiseByCause::of_levels() const {
   return std::hypot(std::hypot(background, background_estimate), std::hypot(smearing, bias));
+}
+
+MotionNoise after_correction(const MotionNoise& moving, const MotionNoise& error, bool own, double exposures_per_bin) {
+  MotionNoise left;
+  left.prnu_exposure = moving.prnu_exposure;
+  left.prnu_bin = moving.prnu_bin;
+  if (own) {
+    left.attitude_error = error.jitter_camera;
+    return left;
+  }
+  left.jitter_camera = error.jitter_camera;
+  left.jitter_exposure = error.jitter_exposure;
+  left.jitter_bin = error.jitter_exposure / exposures_per_bin;
+  return left;
 }
 
 MotionNoise motion_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup) {
@@ -91,7 +111,7 @@ PredictedNoise predict_mean_noise(const StarEstimator& estimator, const MotionNo
   out.bin.smearing = std::sqrt(budget.var_smearing + budget.var_smearing_correction) * ppm;
   out.bin.bias = std::sqrt(budget.var_bias) * ppm;
 
-  out.bin.jitter = kPpm * std::sqrt(motion.jitter_bin);
+  out.bin.jitter = kPpm * std::sqrt(motion.jitter_bin + motion.attitude_error / (n * cameras));
   out.bin.prnu_jitter = kPpm * std::sqrt(motion.prnu_bin / cameras);
 
   // A sinusoid of amplitude a has the variance a²/2. It is the same in all cameras and, slower than a bin, does not
@@ -100,9 +120,9 @@ PredictedNoise predict_mean_noise(const StarEstimator& estimator, const MotionNo
   const double drift =
       0.5 * (square(setup.gain_drift * whole) + square(setup.bias_drift * budget.bias_weight / budget.target));
   out.bin.drift = kPpm * std::sqrt(drift);
-  const double independent = budget.variance() / square(budget.target);
+  const double independent = budget.variance() / square(budget.target) + motion.attitude_error;
   out.exposure = std::sqrt(independent + motion.jitter_camera + motion.prnu_exposure + drift);
-  out.bin_common = std::hypot(out.bin.jitter, out.bin.drift);
+  out.bin_common = std::hypot(kPpm * std::sqrt(motion.jitter_bin), out.bin.drift);
   out.bin_simulated = kPpm * std::sqrt((independent / n + motion.prnu_bin) / simulated + motion.jitter_bin + drift);
   // Within a bin the variance is what the mean of the bin has not taken; n / (n - 1) as the estimator divides by n - 1.
   const double bessel = n > 1.0 ? n / (n - 1.0) : 1.0;
@@ -191,16 +211,21 @@ void add_measurement(TargetMetrics& target, const SeriesSummary& series, double 
     target.causes.residual = target.delta_mag - target.causes.contamination - target.causes.aperture_loss;
     target.causes.residual -= target.causes.smearing;
   }
-  // From noise relative to all light in the aperture to noise relative to the target's.
-  const double stars = target.flux_expected - target.flux_smeared;
-  const double smeared = target.flux_smeared != 0.0 ? target.flux_expected / stars : 1.0;
-  const double whole = smeared / target.crowdsap;
+  const double whole = all_light_per_target(target);
   target.nsr_exposure_measured = series.exposure.scaled(whole);
   target.nsr_1h_within_measured = series.bin_within.scaled(kPpm * whole);
   target.nsr_1h_measured = series.bin_means.scaled(kPpm * whole);
   target.nsr_1h_within_scaled =
       scale_to_cameras(target.nsr_1h_within_measured, target.predicted.bin_within_common, setup);
   target.nsr_1h_scaled = scale_to_cameras(target.nsr_1h_measured, target.predicted.bin_common, setup);
+}
+
+void add_uncorrected(TargetMetrics& target, const SeriesSummary& measured) {
+  target.nsr_1h_uncorrected = measured.bin_means.scaled(kPpm * all_light_per_target(target));
+}
+
+void add_cotrended(TargetMetrics& target, const NoiseEstimate& bin_means) {
+  target.nsr_1h_cotrended = bin_means.scaled(kPpm * all_light_per_target(target));
 }
 
 bool is_clean(const TargetMetrics& target) {

@@ -55,6 +55,7 @@ constexpr std::array kSections = {
     Section{"Photometry", "How fluxes are measured."},
     Section{"Photometry/Annulus", "Ring around a star in which the local background is measured."},
     Section{"Photometry/Calibration", "Which corrections are applied to the images before they are measured."},
+    Section{"Photometry/Knowledge", "How wrong the ground is about what it knows."},
     Section{"Analysis", "What is made of the fluxes."},
     Section{"Output", "What is written."},
 };

@@ -121,6 +121,37 @@ std::vector<Parameter> photometry_parameters() {
        .meaning = "Whether each node has its own gain, or all of them the mean one.",
        .example = "on",
        .assign = [](Mission& m, const Value& v) { m.photometry.calibration.gain = v.flag; }},
+      {.path = "Photometry/JitterCorrection",
+       .kind = Kind::kChoice,
+       .fallback = "none",
+       .choices = {"none", "known", "centroids"},
+       .meaning = "Whether the motion of stars is taken out of light curves, to first order: with the attitude of each "
+                  "exposure that the spacecraft tells, or with that measured in its image by how bright stars moved.",
+       .example = "centroids",
+       .assign =
+           [](Mission& m, const Value& v) {
+             constexpr JitterCorrection kCorrections[] = {JitterCorrection::kNone, JitterCorrection::kKnown,
+                                                          JitterCorrection::kCentroids};
+             m.photometry.jitter_correction = kCorrections[v.choice];
+           }},
+      {.path = "Photometry/Cotrending",
+       .kind = Kind::kInteger,
+       .range = from_to(0, 16),
+       .fallback = "0",
+       .meaning =
+           "So many trends that light curves have in common are taken out of their bin means, at most: those that "
+           "noise alone does not explain; 0: none. Light curves themselves keep them.",
+       .example = "4",
+       .assign = [](Mission& m, const Value& v) { m.photometry.cotrending = static_cast<int>(v.integer); }},
+      {.path = "Photometry/Knowledge/Attitude",
+       .unit = "arcsec",
+       .range = from_to(0, 3600),
+       .fallback = "0",
+       .meaning =
+           "Rms error of the attitude of an exposure that the spacecraft tells, about each axis (JitterCorrection "
+           "known).",
+       .example = "0.01",
+       .assign = [](Mission& m, const Value& v) { m.photometry.knowledge.attitude = Arcseconds(v.real); }},
       {.path = "Photometry/TargetLimit",
        .unit = "mag",
        .range = from_to(-30, 99),

@@ -102,10 +102,11 @@ CommonTrends::CommonTrends(std::span<const float> series, std::span<const double
   const Eigensystem system(*product(scaled, references_, bins, over_stars));
   const auto stars = static_cast<double>(references_);
   constexpr double kMargin = 1.2;  // for edges of finite matrices
-  const double edge = kMargin * std::pow(1.0 + std::sqrt(static_cast<double>(bins) / stars), 2);
+  edge_ = kMargin * std::pow(1.0 + std::sqrt(static_cast<double>(bins) / stars), 2);
+  for (std::size_t k = 0; k < size; ++k) eigenvalues_.push_back(gsl_vector_get(system.values.get(), k) / stars);
   for (std::size_t k = 0; k < std::min({most, bins - 2, size}); ++k) {
     const double value = gsl_vector_get(system.values.get(), k);
-    if (!(value > edge * stars)) break;
+    if (!(value > edge_ * stars)) break;
     for (std::size_t b = 0; b < bins; ++b) {
       double component = 0.0;
       if (over_stars) {

@@ -57,6 +57,8 @@ LightCurveHeader read_header(const FitsReader& reader) {
   header.cycle = number_of(reader, "CYCLE");
   header.exposure_time = number_of(reader, "EXPTIME");
   header.start_mjd = number_of(reader, "MJD-BEG");
+  header.is_corrected = reader.find_unit("ATTITUDE1").has_value();
+  header.has_responses = reader.find_column(unit_named(reader, "STARS"), "RYAW").has_value();
   header.line_time = reader.number(kPrimary, "LINETIME").value_or(0.0);
   header.history = reader.history(kPrimary);
   const int groups = group_count(reader);
@@ -73,6 +75,20 @@ LightCurveHeader read_header(const FitsReader& reader) {
   return header;
 }
 
+/// Responses to the attitude, where light curves were corrected for it.
+std::vector<AttitudeResponse> read_responses(const FitsReader& reader, int unit, std::size_t stars) {
+  std::vector<AttitudeResponse> responses(stars);
+  if (!reader.find_column(unit, "RYAW")) return responses;
+  const auto read = [&](const char* name, double AttitudeResponse::*axis) {
+    const std::vector<double> values = reader.read_numbers(unit, column_of(reader, unit, name));
+    for (std::size_t i = 0; i < stars; ++i) responses[i].*axis = values[i];
+  };
+  read("RYAW", &AttitudeResponse::yaw);
+  read("RPITCH", &AttitudeResponse::pitch);
+  read("RROLL", &AttitudeResponse::roll);
+  return responses;
+}
+
 std::vector<LightCurveStar> read_stars(const FitsReader& reader, const std::string& table) {
   const int unit = unit_named(reader, table);
   const auto ids = reader.read_texts(unit, column_of(reader, unit, "ID"));
@@ -84,8 +100,10 @@ std::vector<LightCurveStar> read_stars(const FitsReader& reader, const std::stri
   const auto flags = reader.read_integers(unit, column_of(reader, unit, "FLAGS"));
   std::vector<LightCurveStar> stars;
   stars.reserve(ids.size());
+  const std::vector<AttitudeResponse> responses = read_responses(reader, unit, ids.size());
   for (std::size_t i = 0; i < ids.size(); ++i)
-    stars.push_back({ids[i], magnitude[i], x[i], y[i], reference[i], nsr[i], static_cast<std::uint32_t>(flags[i])});
+    stars.push_back(
+        {ids[i], magnitude[i], x[i], y[i], reference[i], nsr[i], static_cast<std::uint32_t>(flags[i]), responses[i]});
   return stars;
 }
 
@@ -207,6 +225,18 @@ LightCurve LightCurveReader::read(const std::string& id, int camera) const {
     refuse(impl_->reader, "star", id, "the file has no such star",
            fmt::format("one of the {} in its table STARS", stars.size()));
   return read(static_cast<std::size_t>(found - stars.begin()), camera);
+}
+
+std::vector<Attitude> LightCurveReader::attitudes(int camera) const {
+  if (!impl_->contents.header.is_corrected) return {};
+  const FitsReader& reader = impl_->reader;
+  const int unit = unit_named(reader, fmt::format("ATTITUDE{}", camera));
+  const std::vector<double> yaw = reader.read_numbers(unit, column_of(reader, unit, "YAW"));
+  const std::vector<double> pitch = reader.read_numbers(unit, column_of(reader, unit, "PITCH"));
+  const std::vector<double> roll = reader.read_numbers(unit, column_of(reader, unit, "ROLL"));
+  std::vector<Attitude> attitudes;
+  for (std::size_t k = 0; k < yaw.size(); ++k) attitudes.push_back({yaw[k], pitch[k], roll[k]});
+  return attitudes;
 }
 
 LightCurveContents read_light_curve_contents(const std::string& path) {

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -106,14 +107,16 @@ struct LightCurveWriter::Impl {
   }
 
   void write_stars(std::span<const LightCurveStar> s, const std::string& name) {
-    writer.begin_table({{"ID", FitsNumber::kFloat64, "", longest_id(s)},
-                        {"MAG", FitsNumber::kFloat64, "mag"},
-                        {"X", FitsNumber::kFloat64, "pixel"},
-                        {"Y", FitsNumber::kFloat64, "pixel"},
-                        {"REFERENCE", FitsNumber::kFloat64, "electron"},
-                        {"NSR", FitsNumber::kFloat64},
-                        {"FLAGS", FitsNumber::kInt32}},
-                       name, stars);
+    std::vector<FitsColumn> columns{{"ID", FitsNumber::kFloat64, "", longest_id(s)},
+                                    {"MAG", FitsNumber::kFloat64, "mag"},
+                                    {"X", FitsNumber::kFloat64, "pixel"},
+                                    {"Y", FitsNumber::kFloat64, "pixel"},
+                                    {"REFERENCE", FitsNumber::kFloat64, "electron"},
+                                    {"NSR", FitsNumber::kFloat64},
+                                    {"FLAGS", FitsNumber::kInt32}};
+    if (header.has_responses)
+      for (const char* axis : {"RYAW", "RPITCH", "RROLL"}) columns.push_back({axis, FitsNumber::kFloat64, "arcsec-1"});
+    writer.begin_table(columns, name, stars);
     if (s.empty()) return;
     std::vector<std::int32_t> star_flags;
     star_flags.reserve(s.size());
@@ -125,6 +128,13 @@ struct LightCurveWriter::Impl {
     writer.write_column(4, 0, column_of(s, &LightCurveStar::reference));
     writer.write_column(5, 0, column_of(s, &LightCurveStar::nsr_exposure));
     writer.write_column(6, 0, star_flags);
+    if (!header.has_responses) return;
+    int column = 7;
+    for (double AttitudeResponse::*axis : {&AttitudeResponse::yaw, &AttitudeResponse::pitch, &AttitudeResponse::roll}) {
+      std::vector<double> values;
+      for (const LightCurveStar& star : s) values.push_back(star.response.*axis);
+      writer.write_column(column++, 0, values);
+    }
   }
 
   int begin_image(const std::string& name, const std::vector<FitsCard>& cards) {
@@ -196,6 +206,24 @@ struct LightCurveWriter::Impl {
     block = {};
   }
 
+  void write_attitudes(int camera, std::span<const Attitude> of_camera) {
+    writer.begin_table({{"CADENCENO", FitsNumber::kInt64},
+                        {"YAW", FitsNumber::kFloat64, "arcsec"},
+                        {"PITCH", FitsNumber::kFloat64, "arcsec"},
+                        {"ROLL", FitsNumber::kFloat64, "arcsec"}},
+                       "ATTITUDE" + std::to_string(camera), static_cast<std::int64_t>(of_camera.size()));
+    if (of_camera.empty()) return;
+    std::vector<std::int64_t> cadence(of_camera.size());
+    std::iota(cadence.begin(), cadence.end(), std::int64_t{0});
+    writer.write_column(0, 0, cadence);
+    int column = 1;
+    for (double Attitude::*axis : {&Attitude::yaw, &Attitude::pitch, &Attitude::roll}) {
+      std::vector<double> values;
+      for (const Attitude& attitude : of_camera) values.push_back(attitude.*axis);
+      writer.write_column(column++, 0, values);
+    }
+  }
+
   void write_flags() {
     join_flags(flags);
     writer.begin_table({{"CAMERA", FitsNumber::kInt32},
@@ -238,6 +266,7 @@ struct LightCurveWriter::Impl {
   Block block;
   std::atomic<std::int64_t> stars_written{0};  // of the block
   std::vector<LightCurveFlag> flags;
+  std::vector<std::vector<Attitude>> attitudes;  // [camera][exposure], where corrected for
 };
 
 LightCurveWriter::LightCurveWriter(const std::string& path, const LightCurveHeader& header,
@@ -272,11 +301,24 @@ void LightCurveWriter::add_flags(std::span<const LightCurveFlag> flags) {
   impl_->flags.insert(impl_->flags.end(), flags.begin(), flags.end());
 }
 
+void LightCurveWriter::add_attitudes(int camera, std::span<const Attitude> attitudes) {
+  ASTROID_CHECK_LE(1, camera);
+  ASTROID_CHECK_LE(camera, impl_->header.cameras);
+  impl_->attitudes.resize(static_cast<std::size_t>(impl_->header.cameras));
+  std::vector<Attitude>& all = impl_->attitudes[static_cast<std::size_t>(camera) - 1];
+  all.insert(all.end(), attitudes.begin(), attitudes.end());
+}
+
 void LightCurveWriter::commit(Durability durability) {
   for (const std::int64_t written : impl_->written) ASTROID_CHECK_EQ(written, impl_->header.exposures);
   for (std::size_t g = 0; g < impl_->groups.size(); ++g)
     impl_->write_stars(impl_->groups[g], "STARS" + std::to_string(g + 1));
   impl_->write_flags();
+  if (impl_->header.is_corrected)
+    for (std::size_t camera = 0; camera < impl_->attitudes.size(); ++camera) {
+      ASTROID_CHECK_EQ(static_cast<std::int64_t>(impl_->attitudes[camera].size()), impl_->header.exposures);
+      impl_->write_attitudes(static_cast<int>(camera) + 1, impl_->attitudes[camera]);
+    }
   impl_->writer.commit(durability);
 }
 

@@ -91,6 +91,12 @@ void add_hour_noise(std::vector<TargetColumn>& c) {
                        &TargetMetrics::nsr_1h_measured, value));
   c.push_back(estimate("nsr_1h_simulated_ppm_measured_err", "ppm", "its standard error",
                        &TargetMetrics::nsr_1h_measured, error));
+  c.push_back(estimate("nsr_1h_simulated_ppm_uncorrected", "ppm",
+                       "the same before jitter correction; nothing where there is none",
+                       &TargetMetrics::nsr_1h_uncorrected, value));
+  c.push_back(estimate("nsr_1h_simulated_ppm_cotrended", "ppm",
+                       "what cotrending leaves of it; nothing where there is none", &TargetMetrics::nsr_1h_cotrended,
+                       value));
   c.push_back(estimate("nsr_1h_simulated_ppm_measured_low", "ppm", "lower end of its 95 % interval (chi-squared)",
                        &TargetMetrics::nsr_1h_measured, low));
   c.push_back(estimate("nsr_1h_simulated_ppm_measured_high", "ppm", "upper end of its 95 % interval (chi-squared)",

@@ -35,6 +35,35 @@ Image<float, unit::Adu> first_frame(const std::filesystem::path& folder) {
   return fits.read_image<float, unit::Adu>(1);
 }
 
+/// Statistics of the mean of the cameras before jitter correction, which is undone.
+std::vector<SeriesSummary> measured_series(const std::filesystem::path& file, const GroundSegment& ground,
+                                           std::int64_t exposures_per_bin) {
+  const LightCurveReader reader(file.string());
+  const LightCurveHeader& header = reader.contents().header;
+  const std::size_t stars = reader.contents().stars.size();
+  std::vector<std::vector<Attitude>> attitudes;
+  for (int camera = 1; camera <= header.cameras; ++camera) attitudes.push_back(reader.attitudes(camera));
+  SeriesStatistics statistics(stars, exposures_per_bin);
+  std::vector<double> sum(static_cast<std::size_t>(header.exposures));
+  std::vector<float> mean(sum.size());
+  for (std::size_t star = 0; star < stars; ++star) {
+    std::ranges::fill(sum, 0.0);
+    for (int camera = 1; camera <= header.cameras; ++camera) {
+      const LightCurve curve = reader.read(star, camera);
+      const std::vector<Attitude>& attitude = attitudes[static_cast<std::size_t>(camera) - 1];
+      const std::size_t group =
+          header.group.empty() ? 0 : static_cast<std::size_t>(header.group[static_cast<std::size_t>(camera) - 1]);
+      for (std::size_t k = 0; k < sum.size(); ++k) {
+        const AttitudeCorrection& correction = correction_at(ground.corrections[group], static_cast<std::int64_t>(k));
+        sum[k] += with_attitude(curve.flux[k] / curve.star.reference - 1.0, correction.responses()[star], attitude[k]);
+      }
+    }
+    for (std::size_t k = 0; k < sum.size(); ++k) mean[k] = static_cast<float>(sum[k] / header.cameras);
+    statistics.add(star, 0, mean);
+  }
+  return statistics.summaries();
+}
+
 /// What the stream would have left, read back from its products.
 StreamResult read_stream(const std::filesystem::path& file, const Scene& scene, const GroundSegment& ground) {
   const FitsReader fits(file);
@@ -76,13 +105,17 @@ StreamResult read_stream(const std::filesystem::path& file, const Scene& scene, 
     }
   }
   SeriesStatistics statistics(targets,
-                              std::max<std::int64_t>(2, static_cast<std::int64_t>(scene.summary().exposures_per_bin)));
+                              std::max<std::int64_t>(2, static_cast<std::int64_t>(scene.summary().exposures_per_bin)),
+                              mission.photometry.cotrending > 0);
   std::vector<float> deviation(static_cast<std::size_t>(mission.simulation.exposures));
   for (std::size_t t = 0; t < targets; ++t) {
     fits.read_pixels(*curves, static_cast<std::int64_t>(t) * mission.simulation.exposures, deviation);
     statistics.add(t, 0, deviation);
   }
   result.series = statistics.summaries();
+  result.bin_means = all_bin_means(statistics, mission.simulation.exposures);
+  if (!ground.corrections.front().empty())
+    result.measured = measured_series(file, ground, statistics.exposures_per_bin());
   return result;
 }
 

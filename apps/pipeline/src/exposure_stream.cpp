@@ -60,7 +60,9 @@ std::vector<StarEstimator> mean_estimators(std::span<const StreamGroup> groups) 
   return means;
 }
 
-std::vector<LightCurveStar> light_curve_stars(const Scene& scene, std::span<const StarEstimator> estimators) {
+/// @param responses  to the attitude that is taken out; empty: none is.
+std::vector<LightCurveStar> light_curve_stars(const Scene& scene, std::span<const StarEstimator> estimators,
+                                              std::span<const AttitudeResponse> responses) {
   const std::vector<double> reference = reference_of(estimators);
   std::vector<LightCurveStar> stars;
   for (std::size_t t = 0; t < estimators.size(); ++t) {
@@ -71,9 +73,29 @@ std::vector<LightCurveStar> light_curve_stars(const Scene& scene, std::span<cons
                      .y = star.position.y,
                      .reference = reference[t],
                      .nsr_exposure = std::sqrt(estimators[t].budget.variance()) / reference[t],
-                     .flags = estimators[t].flags});
+                     .flags = estimators[t].flags,
+                     .response = responses.empty() ? AttitudeResponse{} : responses[t]});
   }
   return stars;
+}
+
+/// What the table of stars tells of the correction: nothing where the masks, and with them the responses, change.
+std::span<const AttitudeResponse> responses_of(const StreamGroup& group) {
+  return group.corrections.size() == 1 ? group.corrections.front().correction->responses()
+                                       : std::span<const AttitudeResponse>();
+}
+
+/// Of the mean of all cameras.
+std::vector<AttitudeResponse> mean_responses(std::span<const StreamGroup> groups) {
+  std::vector<AttitudeResponse> mean(responses_of(groups.front()).size());
+  for (const StreamGroup& group : groups)
+    for (std::size_t t = 0; t < mean.size(); ++t) {
+      const AttitudeResponse& response = responses_of(group)[t];
+      mean[t].yaw += group.share * response.yaw;
+      mean[t].pitch += group.share * response.pitch;
+      mean[t].roll += group.share * response.roll;
+    }
+  return mean;
 }
 
 /// photometry/lightcurves.fits, where the configuration asks for it.
@@ -91,6 +113,8 @@ std::unique_ptr<LightCurveWriter> open_light_curves(std::span<const StreamGroup>
                           .cycle = mission.simulation.cycle.value(),
                           .exposure_time = mission.simulation.exposure_time.value(),
                           .history = history_of(*groups.front().plan, scene),
+                          .is_corrected = !groups.front().corrections.empty(),
+                          .has_responses = groups.front().corrections.size() == 1,
                           .line_time = line_time(mission).value()};
   for (const std::size_t group : group_of) {
     header.group.push_back(static_cast<int>(group));
@@ -99,9 +123,10 @@ std::unique_ptr<LightCurveWriter> open_light_curves(std::span<const StreamGroup>
   std::vector<std::vector<LightCurveStar>> stars_of_groups;
   if (groups.size() > 1)
     for (const StreamGroup& group : groups)
-      stars_of_groups.push_back(light_curve_stars(*group.scene, group.estimators));
+      stars_of_groups.push_back(light_curve_stars(*group.scene, group.estimators, responses_of(group)));
   return std::make_unique<LightCurveWriter>((folder / "photometry" / "lightcurves.fits").string(), header,
-                                            light_curve_stars(scene, mean), std::move(stars_of_groups));
+                                            light_curve_stars(scene, mean, mean_responses(groups)),
+                                            std::move(stars_of_groups));
 }
 
 /// The group of each simulated camera.
@@ -150,6 +175,7 @@ std::vector<GroupInput> group_inputs(std::span<const StreamGroup> groups, const 
                       .calibration = FrameCalibration(*group.scene->layout(), calibration_model(mission)),
                       .stretches = std::move(stretches),
                       .own_flags = own_flags_of(group),
+                      .corrections = group.corrections,
                       .images = ImageFiles(*group.scene, *group.plan, folder)});
   }
   return inputs;
@@ -257,8 +283,13 @@ StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamO
       std::max<std::int64_t>(2, static_cast<std::int64_t>(groups.front().scene->summary().exposures_per_bin));
   std::vector<std::vector<std::uint32_t>> own_flags;
   own_flags.reserve(group_of.size());
-  for (const std::size_t group : group_of) own_flags.push_back(inputs[group].own_flags);
-  SeriesStage series(std::move(own_flags), per_bin, static_cast<std::size_t>(length), light_curves.get());
+  std::vector<std::span<const CorrectionStretch>> corrections;
+  for (const std::size_t group : group_of) {
+    own_flags.push_back(inputs[group].own_flags);
+    if (!inputs[group].corrections.empty()) corrections.push_back(inputs[group].corrections);
+  }
+  SeriesStage series(std::move(own_flags), std::move(corrections), per_bin, mission.photometry.cotrending > 0,
+                     static_cast<std::size_t>(length), light_curves.get());
   Stream stream({.simulators = simulators, .group_of = group_of, .groups = inputs, .progress = options.progress},
                 series, threads, length, batch);
   result.timings.prepare = seconds_since(begin);
@@ -274,6 +305,8 @@ StreamResult stream_exposures(std::span<const StreamGroup> groups, const StreamO
   }
 
   result.series = series.summaries();
+  result.bin_means = series.bin_means(exposures);
+  result.measured = series.measured_summaries();
   result.flags = series.flags();
   result.flagged_share = series.flagged_share();
   stream.add_to(result, groups);

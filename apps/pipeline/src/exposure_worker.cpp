@@ -49,6 +49,7 @@ void ExposureWorker::run(Batch batch, FluxBlock& block, std::atomic<std::int64_t
   turn_to(block.camera());
   for (std::size_t i = 0; i < batch.count; ++i) {
     simulate(block.camera(), block.first() + static_cast<std::int64_t>(batch.begin + i));
+    block.attitudes()[batch.begin + i] = state_.attitude.mean;
     block.lost()[batch.begin + i] = state_.lost_electrons;
     block.clipped()[batch.begin + i] = state_.clipped_pixels;
     std::swap(state_.frame, frames_[i]);
@@ -83,6 +84,12 @@ void ExposureWorker::measure(Batch batch, FluxBlock& block) {
     for (Frame& frame : frames) group().calibration.apply(frame, calibration_scratch_);
   if (group().mission.photometry.background == BackgroundMethod::kMesh)
     for (Frame& frame : frames) subtract_mesh(frame, group().mission.photometry);
+  if (!group().corrections.empty())
+    for (std::size_t i = 0; i < batch.count; ++i) {
+      const std::int64_t exposure = block.first() + static_cast<std::int64_t>(batch.begin + i);
+      Attitude& attitude = block.attitudes()[batch.begin + i];
+      attitude = correction_at(group().corrections, exposure).attitude(exposure, attitude, frames[i]);
+    }
   // Frames on either side of a refresh are measured by themselves.
   for (std::size_t begin = 0; begin < batch.count;) {
     const std::int64_t exposure = block.first() + static_cast<std::int64_t>(batch.begin + begin);

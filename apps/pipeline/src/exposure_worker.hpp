@@ -30,8 +30,9 @@ struct EstimatorStretch {
 struct GroupInput {
   const Mission& mission;
   FrameCalibration calibration;
-  std::vector<EstimatorStretch> stretches;  ///< ascending; the first from exposure 0 on
-  std::vector<std::uint32_t> own_flags;     ///< that hold for every exposure, of each target
+  std::vector<EstimatorStretch> stretches;         ///< ascending; the first from exposure 0 on
+  std::vector<std::uint32_t> own_flags;            ///< that hold for every exposure, of each target
+  std::span<const CorrectionStretch> corrections;  ///< empty: none
   ImageFiles images;
 };
 

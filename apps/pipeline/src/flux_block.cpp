@@ -9,6 +9,7 @@ namespace astroid {
 FluxBlock::FluxBlock(std::size_t targets, std::size_t longest)
     : targets_(targets),
       deviation_((longest + kSideBySide - 1) / kSideBySide * targets),
+      attitudes_(longest),
       lost_(longest),
       clipped_(longest) {}
 

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "astroid/core/attitude.hpp"
 #include "astroid/photometry/estimator.hpp"
 
 namespace astroid {
@@ -41,6 +42,10 @@ class FluxBlock {
   /// Copies the series of targets first_target … last_target-1.  @param out  shape (targets, count()).
   void copy_series(std::size_t first_target, std::size_t last_target, std::vector<float>& out) const;
 
+  /// What the ground takes for the mean attitude, by exposure; where it corrects for it.
+  [[nodiscard]] std::span<Attitude> attitudes() { return std::span(attitudes_).first(count_); }
+  [[nodiscard]] std::span<const Attitude> attitudes() const { return std::span(attitudes_).first(count_); }
+
   /// Electrons that left the frame, and pixels clipped by the ADC, by exposure.
   [[nodiscard]] std::span<double> lost() { return std::span(lost_).first(count_); }
   [[nodiscard]] std::span<std::int64_t> clipped() { return std::span(clipped_).first(count_); }
@@ -55,6 +60,7 @@ class FluxBlock {
   // [exposure / kSideBySide][target][exposure % kSideBySide]: what a batch writes lies together, and what a few targets
   // are read from does, too.
   std::vector<Line> deviation_;
+  std::vector<Attitude> attitudes_;
   std::vector<double> lost_;
   std::vector<std::int64_t> clipped_;
 };

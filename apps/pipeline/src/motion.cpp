@@ -58,4 +58,27 @@ std::vector<CrossMotion> AttitudeSharing::of_target(std::size_t target) const {
   return motions;
 }
 
+std::vector<CrossMotion> attitude_error_motion(const PreparedRun& run,
+                                               std::span<const std::vector<CorrectionStretch>> corrections,
+                                               std::size_t target) {
+  const std::size_t count = run.groups.size();
+  const auto jacobian = [&](std::size_t g) -> const AttitudeJacobian& {
+    return run.groups[g].scene->stars()[run.groups[g].targets[target]].motion;
+  };
+  std::vector<CrossMotion> motions(count * count);
+  for (std::size_t g = 0; g < count; ++g) {
+    const AttitudeCorrection& correction = *corrections[g].front().correction;
+    const AttitudeCovariance& error = correction.error();
+    if (correction.is_measured()) {
+      const MotionCovariance own = motion_covariance(jacobian(g), error);
+      motions[g * count + g].exposure = {.xx = own.sxx, .xy = own.sxy, .yx = own.sxy, .yy = own.syy};
+      continue;
+    }
+    const AttitudeVariance shared{error.yaw_yaw, error.pitch_pitch, error.roll_roll};
+    for (std::size_t h = 0; h < count; ++h)
+      motions[g * count + h].exposure = cross_covariance(jacobian(g), jacobian(h), shared);
+  }
+  return motions;
+}
+
 }  // namespace astroid

@@ -194,15 +194,18 @@ std::int64_t exposures_per_refresh(const Scene& scene) {
   return std::max<std::int64_t>(1, std::llround(refresh / mission.simulation.cycle.value()));
 }
 
-/// The stars where they are in the middle of exposures first … last-1, but for jitter.
-std::vector<FieldStar> stars_in_between(const Scene& scene, std::int64_t first, std::int64_t last) {
+/// The attitude of an exposure but for jitter.
+Attitude trend_at(const Scene& scene, std::int64_t exposure) {
+  const double start = static_cast<double>(exposure) * scene.mission().simulation.cycle.value();
+  return scene.attitude_trend().at(scene.mid_time(exposure).value(), start);
+}
+
+/// The stars where they are in an exposure, but for jitter.
+std::vector<FieldStar> stars_at(const Scene& scene, std::int64_t exposure) {
   const SimulationSettings& simulation = scene.mission().simulation;
-  const std::int64_t middle = first + (last - first) / 2;
-  const double start = static_cast<double>(middle) * simulation.cycle.value();
-  const double time = scene.mid_time(middle).value();
-  const Attitude trend = scene.attitude_trend().at(time, start);
-  const Velocity velocity =
-      scene.mission().satellite.aberration ? velocity_since_start(simulation, Seconds(time)) : Velocity{};
+  const Seconds time = scene.mid_time(exposure);
+  const Attitude trend = trend_at(scene, exposure);
+  const Velocity velocity = scene.mission().satellite.aberration ? velocity_since_start(simulation, time) : Velocity{};
   std::vector<FieldStar> stars = field_stars(scene);
   for (std::size_t i = 0; i < stars.size(); ++i) {
     const SceneStar& star = scene.stars()[i];
@@ -222,24 +225,35 @@ GroundSegment perfect_ground_segment(const PreparedRun& run) {
     const Scene& scene = *group.scene;
     segment.grounds.push_back(perfect_ground(scene, group.targets));
     Ground& ground = segment.grounds.back();
+    segment.estimators.emplace_back();
     segment.refreshes.emplace_back();
+    segment.corrections.emplace_back();
+    const PhotometrySettings& photometry = scene.mission().photometry;
+    const auto build = [&](std::int64_t first, const Attitude& origin) {
+      std::vector<StarEstimator> estimators = build_estimators(*scene.layout(), ground.model, photometry);
+      if (photometry.jitter_correction != JitterCorrection::kNone)
+        segment.corrections.back().push_back(
+            {first, std::make_shared<const AttitudeCorrection>(scene, ground.model, estimators, origin)});
+      if (first > 0)
+        segment.refreshes.back().push_back({first, std::move(estimators)});
+      else
+        segment.estimators.back() = std::move(estimators);
+    };
     const std::int64_t exposures = scene.mission().simulation.exposures;
     const std::int64_t each = exposures_per_refresh(scene);
-    const auto build = [&] { return build_estimators(*scene.layout(), ground.model, scene.mission().photometry); };
     if (each == 0) {
-      segment.estimators.push_back(build());
+      build(0, {});
       continue;
     }
     // From the last stretch to the first, whose places the ground then keeps.
     for (std::int64_t first = (exposures - 1) / each * each; first >= 0; first -= each) {
-      ground.stars = stars_in_between(scene, first, std::min(first + each, exposures));
+      const std::int64_t middle = first + (std::min(first + each, exposures) - first) / 2;
+      ground.stars = stars_at(scene, middle);
       ground.model.stars = ground.stars;
-      if (first > 0)
-        segment.refreshes.back().push_back({first, build()});
-      else
-        segment.estimators.push_back(build());
+      build(first, trend_at(scene, middle));
     }
     std::ranges::reverse(segment.refreshes.back());
+    std::ranges::reverse(segment.corrections.back());
   }
   return segment;
 }
@@ -251,7 +265,10 @@ std::vector<StreamGroup> stream_groups(const PreparedRun& run, const GroundSegme
         ground.estimators.empty() ? std::span<const StarEstimator>() : std::span(ground.estimators[g]);
     const std::span<const EstimatorRefresh> refreshes =
         ground.refreshes.empty() ? std::span<const EstimatorRefresh>() : std::span(ground.refreshes[g]);
-    groups.push_back({run.groups[g].scene, run.groups[g].plan, estimators, run.groups[g].share, refreshes});
+    const std::span<const CorrectionStretch> corrections =
+        ground.corrections.empty() ? std::span<const CorrectionStretch>() : std::span(ground.corrections[g]);
+    groups.push_back(
+        {run.groups[g].scene, run.groups[g].plan, estimators, run.groups[g].share, refreshes, corrections});
   }
   return groups;
 }
@@ -273,7 +290,9 @@ Ground perfect_ground(const Scene& scene, std::span<const std::size_t> targets) 
   ground.model.faintest_electrons = all.empty() ? 0.0 : faintest_of(scene, all);
   ground.model.contamination_limit = scene.mission().analysis.uncontaminated_spr;
   const RunSetup setup = run_setup(scene.mission());
-  ground.model.motion = motion_like_pixel_noise(mean_bin_motion(scene, all), setup.exposures_per_bin, setup.cameras);
+  // Jitter correction leaves so little of the motion that weights need not mind it.
+  if (scene.mission().photometry.jitter_correction == JitterCorrection::kNone)
+    ground.model.motion = motion_like_pixel_noise(mean_bin_motion(scene, all), setup.exposures_per_bin, setup.cameras);
   ground.model.gain = scene.mission().ccd.gain;
   ground.model.bias = scene.mission().ccd.bias;
   believe_readout(scene, ground.model);

@@ -6,12 +6,14 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <optional>
 
 #include "astroid/analysis/contamination.hpp"
 #include "astroid/analysis/group_mean.hpp"
 #include "astroid/analysis/target_metrics.hpp"
 #include "astroid/analysis/verdict.hpp"
 #include "astroid/catalogues/sky_brightness.hpp"
+#include "astroid/core/statistics/quantiles.hpp"
 #include "astroid/photometry/image_photometry.hpp"
 #include "astroid/photometry/light_curves.hpp"
 #include "astroid/pipeline/field.hpp"
@@ -19,6 +21,7 @@
 #include "astroid/pipeline/motion.hpp"
 #include "astroid/pipeline/run_record.hpp"
 #include "astroid/reports/report.hpp"
+#include "cotrend_run.hpp"
 #include "folders.hpp"
 
 namespace astroid {
@@ -114,6 +117,45 @@ std::vector<ExampleLightCurve> example_light_curves(const std::filesystem::path&
   return examples;
 }
 
+/// What jitter correction did, and what it brought.
+std::vector<std::string> jitter_correction_notes(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
+  if (run.ground.corrections.front().empty()) return {};
+  const AttitudeCorrection& correction = *run.ground.corrections.front().front().correction;
+  std::vector<double> before;
+  std::vector<double> after;
+  std::vector<double> brightest;
+  for (const TargetMetrics& t : targets)
+    if (is_clean(t) && std::isfinite(t.nsr_1h_uncorrected.value)) brightest.push_back(t.mag);
+  std::ranges::sort(brightest);
+  constexpr std::size_t kShown = 100;  // in which motion shows the most
+  const double limit = brightest.empty() ? 0.0 : brightest[std::min(kShown, brightest.size()) - 1];
+  for (const TargetMetrics& t : targets)
+    if (is_clean(t) && std::isfinite(t.nsr_1h_uncorrected.value) && t.mag <= limit) {
+      before.push_back(t.nsr_1h_uncorrected.value);
+      after.push_back(t.nsr_1h_measured.value);
+    }
+  std::string text = "motion was taken out of the light curves " + correction.description();
+  if (!before.empty())
+    text += fmt::format(
+        "; the noise in {:g} s of the {} brightest unsaturated targets (to mag {:.2f}) fell from {:.4g} to "
+        "{:.4g} ppm (medians, simulated cameras)",
+        run.prepared.scene().mission().analysis.bin.value(), before.size(), limit, quantile(before, 0.5).value,
+        quantile(after, 0.5).value);
+  return {text};
+}
+
+/// Takes common trends out of the bin means, where the mission asks for it.  @returns what was done
+std::optional<std::string> cotrend(const MeasuredRun& run, std::span<TargetMetrics> targets,
+                                   const std::filesystem::path& file) {
+  const Mission& mission = run.prepared.scene().mission();
+  if (run.stream.bin_means.empty()) return std::nullopt;
+  const Cotrending cotrending(run.stream.bin_means, run.stream.series, targets,
+                              static_cast<std::size_t>(mission.photometry.cotrending));
+  for (std::size_t t = 0; t < targets.size(); ++t) add_cotrended(targets[t], cotrending.left(t));
+  cotrending.write(file, targets, mission.analysis.bin.value());
+  return cotrending_note(cotrending, targets);
+}
+
 std::vector<std::string> warnings_of(const MeasuredRun& run, std::span<const TargetMetrics> targets) {
   std::vector<std::string> warnings = run.prepared.notes;
   for (const PreparedGroup& group : run.prepared.groups)
@@ -145,6 +187,7 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
     shares.push_back(group.share);
   }
   const AttitudeSharing attitude(run.prepared);
+  const bool is_corrected = !run.ground.corrections.front().empty();
   std::vector<TargetMetrics> targets;
   for (std::size_t t = 0; t < groups.front().targets.size(); ++t) {
     std::vector<GroupView> views;
@@ -154,10 +197,17 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
       stars.push_back(truth[g][groups[g].targets[t]]);
     }
     const StarEstimator estimator = mean_estimator(views);
-    const PredictedNoise noise =
-        predict_mean_noise(estimator, mean_motion_noise(views, attitude.of_target(t), setup), setup);
+    MotionNoise motion = mean_motion_noise(views, attitude.of_target(t), setup);
+    if (is_corrected) {
+      const MotionNoise error =
+          mean_motion_noise(views, attitude_error_motion(run.prepared, run.ground.corrections, t), setup);
+      motion = after_correction(motion, error, run.ground.corrections.front().front().correction->is_measured(),
+                                setup.exposures_per_bin);
+    }
+    const PredictedNoise noise = predict_mean_noise(estimator, motion, setup);
     TargetMetrics target = predict_mean_target(mean_truth(stars, shares), estimator, noise, setup);
     add_measurement(target, run.stream.series[t], run.stream.reference[t], run.stream.flags[t], setup);
+    if (is_corrected && t < run.stream.measured.size()) add_uncorrected(target, run.stream.measured[t]);
     targets.push_back(std::move(target));
   }
   return targets;
@@ -166,8 +216,9 @@ std::vector<TargetMetrics> target_metrics(const MeasuredRun& run, const RunSetup
 ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& run) {
   const Mission& mission = run.prepared.scene().mission();
   const RunSetup setup = run_setup(mission);
-  const std::vector<TargetMetrics> targets = target_metrics(run, setup);
+  std::vector<TargetMetrics> targets = target_metrics(run, setup);
   create_folder(folder / "photometry");
+  const std::optional<std::string> cotrended = cotrend(run, targets, folder / "photometry" / "cotrending.fits");
   write_mean_sources(folder / "photometry" / "sources.csv", run, targets);
   const std::vector<ContaminationRow> contamination = contamination_rows(run, targets);
   const std::vector<BudgetRow> budget = budget_rows(run);
@@ -192,6 +243,8 @@ ReportedRun report_run(const std::filesystem::path& folder, const MeasuredRun& r
     input.provenance.emplace_back(component.name, component.version);
   input.provenance.emplace_back("seed", fmt::format("{}", mission.simulation.seed));
   input.warnings = warnings_of(run, targets);
+  for (const std::string& note : jitter_correction_notes(run, targets)) input.warnings.push_back(note);
+  if (cotrended) input.warnings.push_back(*cotrended);
   if (run.stream.first_frame.size() > 0) {
     input.image = run.stream.first_frame.view();
     input.image_caption =

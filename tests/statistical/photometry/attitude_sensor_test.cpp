@@ -7,6 +7,7 @@
 #include <iostream>
 #include <vector>
 
+#include "astroid/photometry/attitude_response.hpp"
 #include "astroid/test/ground_scene.hpp"
 
 namespace astroid {

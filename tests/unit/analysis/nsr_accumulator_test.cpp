@@ -164,6 +164,23 @@ TEST(SeriesStatistics, HaveNoRelativeNoiseWhereThereIsNoFlux) {
   EXPECT_TRUE(std::isnan(statistics.summary(0).exposure.value));
 }
 
+TEST(SeriesStatistics, KeepTheMeansOfBinsWhereAsked) {
+  SeriesStatistics statistics(1, 4, true);
+  const float gap = std::numeric_limits<float>::quiet_NaN();
+  // Four bins: whole, with a value missing, with too few, and one that ends early.
+  const std::vector<float> series{1, 2, 3, 4, 1, gap, 3, 5, gap, gap, gap, 7, 2, 4};
+  statistics.add(0, 0, std::span(series).first(6));
+  statistics.add(0, 6, std::span(series).subspan(6));
+  const std::vector<float> means = statistics.bin_means(0, 4);
+  ASSERT_EQ(means.size(), 4U);
+  EXPECT_EQ(means[0], 2.5F);
+  EXPECT_EQ(means[1], 3.0F);
+  EXPECT_TRUE(std::isnan(means[2]));
+  EXPECT_EQ(means[3], 3.0F);
+  EXPECT_EQ(statistics.bin_means(0, 4).size(), 4U) << "asking takes nothing away";
+  EXPECT_TRUE(SeriesStatistics(1, 4).bin_means(0, 4).empty());
+}
+
 TEST(SeriesStatistics, AcceptGapsBetweenBlocksButNeverGoBack) {
   SeriesStatistics statistics(1, 4);
   statistics.add(0, 0, std::vector<float>{0.0F, 0.1F});

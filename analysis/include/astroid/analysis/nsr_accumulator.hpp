@@ -38,7 +38,8 @@ struct SeriesSummary {
 class SeriesStatistics {
  public:
   /// @param exposures_per_bin  >= 2; 144 is an hour at a cycle of 25 s.
-  SeriesStatistics(std::size_t stars, std::int64_t exposures_per_bin);
+  /// @param keep_bin_means  4 bytes for each bin of each star.
+  SeriesStatistics(std::size_t stars, std::int64_t exposures_per_bin, bool keep_bin_means = false);
 
   [[nodiscard]] std::size_t stars() const { return stars_.size(); }
   [[nodiscard]] std::int64_t exposures_per_bin() const { return per_bin_; }
@@ -50,6 +51,9 @@ class SeriesStatistics {
   /// The result so far; more exposures may follow.
   [[nodiscard]] SeriesSummary summary(std::size_t star) const;
   [[nodiscard]] std::vector<SeriesSummary> summaries() const;
+  /// Mean deviation of a star in each of the first bins, NaN where fewer than half of a bin was measured; empty unless
+  /// they were kept.  @returns shape (bins)
+  [[nodiscard]] std::vector<float> bin_means(std::size_t star, std::size_t bins) const;
 
  private:
   // Running sums of a bin: an exposure goes to the one that its place in the bin names, whatever block it came in.
@@ -66,13 +70,18 @@ class SeriesStatistics {
     std::int64_t open_bin = -1, open_n = 0;
     double shift = 0.0;                               // the first value of the open bin
     std::array<double, kLanes> sum{}, sum_squares{};  // of the open bin, about its first value
+    std::vector<float> bin_means;                     // of closed bins, where they are kept
   };
   static void add_to_bin(Star& star, std::size_t place, std::span<const float> deviation);
   void close(Star& star) const;
 
   std::int64_t per_bin_;
+  bool keep_bin_means_;
   std::vector<double> c4_;  // by number of exposures
   std::vector<Star> stars_;
 };
+
+/// The bin means of every star of so many exposures.  @returns shape (stars, bins); empty unless they were kept
+std::vector<float> all_bin_means(const SeriesStatistics& statistics, std::int64_t exposures);
 
 }  // namespace astroid

@@ -69,7 +69,16 @@ struct MotionNoise {
   double jitter_bin = 0.0;       ///< and in the mean over a bin
   double prnu_exposure = 0.0;    ///< unequal pixels, in one exposure of one camera
   double prnu_bin = 0.0;         ///< in a bin of one camera
+  /// What jitter correction by an attitude that each camera measures for itself puts in, in one exposure of one camera:
+  /// independent from exposure to exposure and from camera to camera.
+  double attitude_error = 0.0;
 };
+/// What is left after jitter correction: of the light across the edge of the aperture only what the error of the
+/// attitude leaves; unequal pixels are not corrected for.
+/// @param moving  before.  @param error  the same of the error of the attitude, as if the camera moved by it.
+/// @param own     whether each camera has its own error; else all share it. It is new in every exposure.
+MotionNoise after_correction(const MotionNoise& moving, const MotionNoise& error, bool own, double exposures_per_bin);
+
 /// Where all cameras move alike.
 MotionNoise motion_noise(const StarEstimator& estimator, const StarMotion& motion, const RunSetup& setup);
 
@@ -119,6 +128,9 @@ struct TargetMetrics {
   NoiseEstimate nsr_1h_measured;         ///< ppm, by bin means, n cameras
   NoiseEstimate nsr_1h_within_scaled;    ///< the same scaled to N cameras
   NoiseEstimate nsr_1h_scaled;
+  NoiseEstimate nsr_1h_uncorrected;  ///< as nsr_1h_measured, before jitter correction; nothing without one
+  NoiseEstimate
+      nsr_1h_cotrended;  ///< as nsr_1h_measured, without what targets have in common; nothing unless asked for
   std::int64_t bins = 0;
 };
 
@@ -134,6 +146,12 @@ TargetMetrics predict_mean_target(const TruthStar& truth, const StarEstimator& e
 /// @param flags      measurement_flag bits seen in any exposure, added to those of the estimator.
 void add_measurement(TargetMetrics& target, const SeriesSummary& series, double reference, std::uint32_t flags,
                      const RunSetup& setup);
+
+/// Adds the noise that was measured before jitter correction, after add_measurement().
+void add_uncorrected(TargetMetrics& target, const SeriesSummary& measured);
+
+/// Adds the noise that cotrending leaves, after add_measurement().  @param bin_means  of deviations, with its freedom.
+void add_cotrended(TargetMetrics& target, const NoiseEstimate& bin_means);
 
 /// A noise of n simulated cameras as it would be with N: only what cameras do not share falls.
 /// @param common  the shared part, in the unit of `simulated`; a measured noise below it is all taken as shared.

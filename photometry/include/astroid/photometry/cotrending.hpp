@@ -38,6 +38,11 @@ class CommonTrends {
     return std::span(trends_).subspan(k * bins_, bins_);
   }
 
+  /// Eigenvalues of the correlation over the number of references, the largest first: of noise alone they stay below
+  /// edge().
+  [[nodiscard]] std::span<const double> eigenvalues() const { return eigenvalues_; }
+  [[nodiscard]] double edge() const { return edge_; }
+
   /// Least-squares fit of all trends and a constant to one series.
   /// @param series  shape (bins); NaN is left out. With too few bins nothing is fitted, and rms_after is NaN.
   [[nodiscard]] TrendFit fit(std::span<const float> series) const;
@@ -47,6 +52,8 @@ class CommonTrends {
  private:
   std::size_t bins_;
   std::size_t references_ = 0;
+  double edge_ = 0.0;
+  std::vector<double> eigenvalues_;
   std::vector<double> trends_;  // [trend][bin]
 };
 

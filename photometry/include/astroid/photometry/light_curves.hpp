@@ -21,6 +21,7 @@
 #include <vector>
 
 #include "astroid/core/atomic_file.hpp"
+#include "astroid/photometry/attitude_response.hpp"
 
 namespace astroid {
 
@@ -31,7 +32,8 @@ struct LightCurveStar {
   double x = 0.0, y = 0.0;
   double reference = 0.0;  ///< e- per exposure
   double nsr_exposure = 0.0;
-  std::uint32_t flags = 0;  ///< measurement_flag bits that hold for every exposure
+  std::uint32_t flags = 0;      ///< measurement_flag bits that hold for every exposure
+  AttitudeResponse response{};  ///< by which the attitude was taken out of it, where it was
 };
 
 /// Flags of consecutive measurements, beyond those that their star has in every exposure.
@@ -56,6 +58,8 @@ struct LightCurveHeader {
   std::vector<std::string> history;  ///< the plan, line by line
   std::vector<int> group{};          ///< of each camera, from 0; empty: all cameras are alike
   std::vector<double> stagger{};     ///< s, of each camera after the start of a cycle; empty: none
+  bool is_corrected = false;         ///< for the attitude, which the file tells beside (with_attitude())
+  bool has_responses = false;        ///< LightCurveStar::response holds for all exposures: masks are not refreshed
   double line_time = 0.0;            ///< s, by which a row is exposed later than the one below; 0: all at once
 };
 
@@ -69,8 +73,8 @@ struct LightCurveHeader {
 
 /// Writes lightcurves.fits beside, in blocks; renames on commit(); without it nothing stays behind.
 ///
-/// Memory does not grow with the exposures: what is kept is the flags, in a row, and, of several cameras, one block of
-/// their mean.
+/// Memory hardly grows with the exposures: what is kept is the flags, in a row, the attitudes that fluxes were
+/// corrected for, and, of several cameras, one block of their mean.
 /// @throws EnvironmentError(path, cause), from every member function.  @thread one at a time, but for write_star()
 class LightCurveWriter {
  public:
@@ -99,6 +103,8 @@ class LightCurveWriter {
   void end_block();
 
   void add_flags(std::span<const LightCurveFlag> flags);
+  /// The attitudes that the next exposures of a camera, in their order, were corrected for.
+  void add_attitudes(int camera, std::span<const Attitude> attitudes);
   /// @throws BugError unless every exposure of every camera was written.
   void commit(Durability durability = Durability::kAtOnce);
 
@@ -143,6 +149,8 @@ class LightCurveReader {
   [[nodiscard]] LightCurve read(std::size_t star, int camera) const;
   /// The same for the star of that id.
   [[nodiscard]] LightCurve read(const std::string& id, int camera) const;
+  /// What each exposure of a camera was corrected for; empty where nothing was corrected.
+  [[nodiscard]] std::vector<Attitude> attitudes(int camera) const;
 
  private:
   struct Impl;

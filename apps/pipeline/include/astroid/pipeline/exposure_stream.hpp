@@ -12,6 +12,7 @@
 
 #include "astroid/analysis/nsr_accumulator.hpp"
 #include "astroid/photometry/estimator.hpp"
+#include "astroid/pipeline/attitude_correction.hpp"
 #include "astroid/sim/plan.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -41,6 +42,8 @@ struct StreamTimings {
 /// What a stream leaves besides its files.
 struct StreamResult {
   std::vector<SeriesSummary> series;    ///< of each target, mean of the simulated cameras
+  std::vector<SeriesSummary> measured;  ///< the same before jitter correction; empty without one
+  std::vector<float> bin_means;         ///< of each target, [target][bin], where they are cotrended; else empty
   std::vector<double> reference;        ///< flux the series are relative to, e- per exposure, mean of the cameras
   std::vector<std::uint32_t> flags;     ///< measurement_flag bits seen in any exposure, of each target
   std::vector<double> flagged_share;    ///< share of exposures of a target with any flag
@@ -67,6 +70,8 @@ struct StreamGroup {
   /// Those that follow `estimators`, which hold from exposure 0 on; ascending. Fluxes are relative to what the
   /// estimators of their time expect.
   std::span<const EstimatorRefresh> refreshes{};
+  /// Of the targets' fluxes; empty: none.
+  std::span<const CorrectionStretch> corrections{};
 };
 
 /// Runs all exposures of all simulated cameras, numbered through the groups by group_of_camera().

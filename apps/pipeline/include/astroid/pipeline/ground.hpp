@@ -8,6 +8,7 @@
 
 #include "astroid/photometry/calibration.hpp"
 #include "astroid/photometry/estimator.hpp"
+#include "astroid/pipeline/attitude_correction.hpp"
 #include "astroid/pipeline/exposure_stream.hpp"
 #include "astroid/pipeline/run.hpp"
 #include "astroid/sim/scene.hpp"
@@ -30,9 +31,10 @@ Ground perfect_ground(const Scene& scene, std::span<const std::size_t> targets);
 
 /// What the ground believes of the cameras of every group, and what it measures their images with.
 struct GroundSegment {
-  std::vector<Ground> grounds;                           ///< [group]
-  std::vector<std::vector<StarEstimator>> estimators;    ///< [group][target]; of the first stretch of time
-  std::vector<std::vector<EstimatorRefresh>> refreshes;  ///< [group]; of those after, where they are made anew
+  std::vector<Ground> grounds;                              ///< [group]
+  std::vector<std::vector<StarEstimator>> estimators;       ///< [group][target]; of the first stretch of time
+  std::vector<std::vector<EstimatorRefresh>> refreshes;     ///< [group]; of those after, where they are made anew
+  std::vector<std::vector<CorrectionStretch>> corrections;  ///< [group], of jitter; each empty where there is none
 };
 /// Where the mission refreshes masks, the ground knows the drift of the attitude and aberration as well.
 /// @param run  must outlive the result.

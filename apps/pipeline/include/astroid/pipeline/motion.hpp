@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "astroid/analysis/motion.hpp"
+#include "astroid/pipeline/attitude_correction.hpp"
 #include "astroid/pipeline/run.hpp"
 #include "astroid/sim/scene.hpp"
 
@@ -31,5 +32,12 @@ class AttitudeSharing {
   const PreparedRun& run_;
   std::vector<AttitudeVariance> exposure_, bin_;  // [group][group], covariances
 };
+
+/// The error of the attitude that jitter correction uses, as a motion of a target; nothing of it averages out within an
+/// exposure. Shape as of_target(): what cameras of different groups share is theirs only where the spacecraft tells it.
+/// @param corrections  of each group, none of them empty; the first stretch of each is taken for all.
+std::vector<CrossMotion> attitude_error_motion(const PreparedRun& run,
+                                               std::span<const std::vector<CorrectionStretch>> corrections,
+                                               std::size_t target);
 
 }  // namespace astroid

@@ -10,6 +10,7 @@ namespace astroid {
 enum class PhotometryMethod { kAperture, kMask, kWeighted, kPsf };
 enum class BackgroundMethod { kKnown, kLocal, kMesh };
 enum class BiasSource { kKnown, kPrescan };
+enum class JitterCorrection { kNone, kKnown, kCentroids };
 
 /// What is taken out of an image before it is measured.
 struct CalibrationSettings {
@@ -20,6 +21,13 @@ struct CalibrationSettings {
   bool gain = true;                               ///< of each node, instead of the mean one
 
   friend bool operator==(const CalibrationSettings&, const CalibrationSettings&) = default;
+};
+
+/// How wrong the ground is about what it knows.
+struct KnowledgeSettings {
+  Arcseconds attitude{0.0};  ///< rms of the attitude of an exposure that the spacecraft tells, each axis
+
+  friend bool operator==(const KnowledgeSettings&, const KnowledgeSettings&) = default;
 };
 
 struct PhotometrySettings {
@@ -33,6 +41,9 @@ struct PhotometrySettings {
   int mesh = 64;
   Magnitude target_limit{99.0};  ///< stars brighter than this are targets
   CalibrationSettings calibration;
+  JitterCorrection jitter_correction = JitterCorrection::kNone;
+  int cotrending = 0;  ///< common trends that are taken out of bin means, at most
+  KnowledgeSettings knowledge;
 
   friend bool operator==(const PhotometrySettings&, const PhotometrySettings&) = default;
 };
