@@ -1,6 +1,6 @@
 # The commands of the project; `make` alone lists them. The steps themselves are CMake presets (CMakePresets.json).
 .DEFAULT_GOAL := help
-.PHONY: help packages test-packages build assess test check bench format tidy asan tsan clean
+.PHONY: help packages test-packages build assess test check bench nightly format tidy asan tsan clean
 
 mission := plato
 astroid := build/release/bin/astroid
@@ -32,6 +32,10 @@ bench: test-packages ## build and run the benchmarks, some ten minutes; results 
 	cmake --build --preset bench
 	cmake --build --preset bench --target run-benchmarks
 	@echo "results: out/bench/all.json; docs/performance.md has a run to compare with"
+
+nightly: test-packages ## a million random cases of every property, others each time; some minutes
+	cmake --preset ci && cmake --build --preset ci --target stability_core_test
+	RC_PARAMS="max_success=1000000" build/ci/tests/stability/core/stability_core_test --gtest_filter='*Properties*'
 
 format: ## format every source file
 	cmake/format.sh --fix
