@@ -76,7 +76,7 @@ Figure figure_renderers(const TradeoffInput& input) {
   const AxisRange x = full_range(times, 0.12);
   figure.commands = fmt::format(
       "  set logscale xy\n  set format y \"10^{{%L}}\"\n  set xrange [{:.6g}:{:.6g}]\n  set yrange [{:.6g}:{:.6g}]\n"
-      "  set xlabel \"CPU time of a star, {{/Symbol m}}s\"\n  set ylabel \"error, ppm rms\"\n  set key top right\n",
+      "  set xlabel \"CPU time of a star, {{/Symbol m}}s\"\n  set ylabel \"error, ppm rms\"\n  set key bottom right\n",
       std::pow(10.0, x.low), std::pow(10.0, x.high), 0.3 * kFloor, 3.0 * *std::ranges::max_element(errors));
   figure.commands += level(input.photon_noise, "photon noise of the brightest target, one exposure");
   figure.commands += level(input.photon_noise_bin, "the same of a bin of all cameras");
@@ -135,7 +135,7 @@ Figure figure_accuracy(const TradeoffInput& input) {
       "\"measured\"\n"
       "  set bmargin at screen 0.1\n  set tmargin at screen 0.51\n  set format x \"%g\"\n  set xlabel "
       "\"Simulation/Accuracy, ppm\"\n"
-      "  set yrange [*:*]\n  set ylabel \"CPU time\"\n  set key bottom right\n"
+      "  set yrange [*:*]\n  set ylabel \"CPU time\"\n  set key center right\n"
       "  plot \"tradeoff_accuracy.csv\" skip 1 using 1:4 with linespoints pointtype 7 linecolor rgb \"{}\" title \"an "
       "exposure, ms per 1000 stars\", \\\n"
       "    \"\" skip 1 using 1:5 with linespoints pointtype 5 linecolor rgb \"{}\" title \"before the first, s\"\n  "

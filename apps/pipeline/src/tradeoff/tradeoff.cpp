@@ -20,6 +20,7 @@ namespace astroid {
 namespace {
 
 constexpr double kMillionth = 1e6;
+constexpr double kStars = 1000.0;  // that times are stated for
 /// Errors below this share of the photon noise of one exposure of the brightest star cannot be seen in it.
 constexpr double kUnseen = 0.1;
 
@@ -48,25 +49,28 @@ void advise_renderer(TradeoffResult& result) {
         seconds_text(result.rows[fastest].seconds)));
 }
 
-void advise_accuracy(TradeoffResult& result) {
+/// @param images  of 1000 stars, that all exposures of the run amount to
+void advise_accuracy(TradeoffResult& result, double images) {
   // What is an error in all cameras and exposures alike is to be compared with the noise that is left of them all.
   const double most = kUnseen * result.photon_noise_bin;
-  const TradeoffRow* best = nullptr;
-  for (const TradeoffRow& row : result.rows) {
-    if (row.sweep != Sweep::kAccuracy || row.of_promise > 1.0 || row.value > most) continue;
-    if (best == nullptr || row.seconds + row.seconds_once < 0.9 * (best->seconds + best->seconds_once)) best = &row;
-  }
-  if (best == nullptr) return;
+  const auto cost = [&](const TradeoffRow& row) { return row.seconds_once + images * row.seconds; };
   const TradeoffRow* const own = chosen_of(result.rows, Sweep::kAccuracy);
+  const auto is_good = [&](const TradeoffRow& row) {
+    return row.sweep == Sweep::kAccuracy && row.of_promise <= 1.0 && row.value <= most;
+  };
+  const TradeoffRow* best = own != nullptr && is_good(*own) ? own : nullptr;
+  constexpr double kWorthIt = 0.9;  // of the time, or times cannot be told apart
+  for (const TradeoffRow& row : result.rows)
+    if (is_good(row) && (best == nullptr || cost(row) < kWorthIt * cost(*best))) best = &row;
+  if (best == nullptr) return;
   result.advice.push_back(fmt::format(
       "Accuracy: the noise of a bin of all cameras is {:.3g} ppm for the brightest target, so errors below "
-      "{:.2g} ppm do not show. Recommended: --set {} (measured {:.2g} ppm at most, {} for an exposure of 1000 "
-      "stars, {} once).",
-      result.photon_noise_bin, most, best->parameter, best->error_max, seconds_text(best->seconds),
-      seconds_text(best->seconds_once)));
+      "{:.2g} ppm do not show. Recommended: --set {} (measured {:.2g} ppm at most, {:.2g} of what is "
+      "promised); the images of the run take {} of CPU.",
+      result.photon_noise_bin, most, best->parameter, best->error_max, best->of_promise, seconds_text(cost(*best))));
   if (own != nullptr && own != best)
-    result.advice.push_back(fmt::format("The configuration's {:g} ppm costs {} for the same, and {} once.", own->value,
-                                        seconds_text(own->seconds), seconds_text(own->seconds_once)));
+    result.advice.push_back(
+        fmt::format("With the configuration's {:g} ppm they take {}.", own->value, seconds_text(cost(*own))));
 }
 
 void advise_photometry(TradeoffResult& result) {
@@ -142,7 +146,8 @@ TradeoffResult measure_tradeoff(const ResolvedConfiguration& configuration, cons
       [&] { simulator.simulate(exposure++ % mission.simulation.exposures, state); }, tradeoff.seconds);
   append(tradeoff::sweep_series(mission, each * configuration.mission.telescope.simulated_cameras, once));
   advise_renderer(result);
-  advise_accuracy(result);
+  advise_accuracy(result,
+                  static_cast<double>(mission.simulation.exposures) * static_cast<double>(summary.stars) / kStars);
   advise_photometry(result);
   advise_effects(result);
   advise_series(result);
