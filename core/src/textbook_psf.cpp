@@ -91,6 +91,7 @@ class SampledPsf final : public PixelByPixel {
 
 std::vector<SampledPsf::Node> midpoints(int n) {
   std::vector<SampledPsf::Node> nodes;
+  nodes.reserve(static_cast<std::size_t>(n));
   for (int i = 0; i < n; ++i) nodes.push_back({(i + 0.5) / n - 0.5, 1.0 / n});
   return nodes;
 }

@@ -129,7 +129,7 @@ struct LightCurveWriter::Impl {
     writer.write_column(5, 0, column_of(s, &LightCurveStar::nsr_exposure));
     writer.write_column(6, 0, star_flags);
     if (!header.has_responses) return;
-    int column = 7;
+    std::size_t column = 7;
     for (double AttitudeResponse::*axis : {&AttitudeResponse::yaw, &AttitudeResponse::pitch, &AttitudeResponse::roll}) {
       std::vector<double> values;
       for (const LightCurveStar& star : s) values.push_back(star.response.*axis);
@@ -216,7 +216,7 @@ struct LightCurveWriter::Impl {
     std::vector<std::int64_t> cadence(of_camera.size());
     std::iota(cadence.begin(), cadence.end(), std::int64_t{0});
     writer.write_column(0, 0, cadence);
-    int column = 1;
+    std::size_t column = 1;
     for (double Attitude::*axis : {&Attitude::yaw, &Attitude::pitch, &Attitude::roll}) {
       std::vector<double> values;
       for (const Attitude& attitude : of_camera) values.push_back(attitude.*axis);

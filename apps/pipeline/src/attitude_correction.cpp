@@ -35,7 +35,7 @@ double saturation(const Mission& mission) {
 double brightest_pixel(const FieldStar& star, const PixelPsf& psf) {
   constexpr int kAround = 3;
   const auto first = [](double centre) { return static_cast<int>(std::lround(centre)) - kAround / 2; };
-  std::array<double, kAround * kAround> fractions{};
+  std::array<double, std::size_t{kAround} * kAround> fractions{};
   psf.integrate(star.position, {first(star.position.x), first(star.position.y), kAround, kAround}, fractions);
   return star.electrons * *std::ranges::max_element(fractions);
 }
@@ -53,6 +53,7 @@ std::vector<GuideStar> guide_stars(const Scene& scene, const GroundModel& model,
   std::ranges::stable_sort(stars, std::ranges::greater(), [&](std::size_t s) { return scene.stars()[s].electrons; });
   stars.resize(std::min(stars.size(), kMostGuides));
   std::vector<GuideStar> guides;
+  guides.reserve(stars.size());
   for (const std::size_t star : stars) guides.push_back({star, scene.stars()[star].motion});
   return guides;
 }

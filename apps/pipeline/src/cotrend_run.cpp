@@ -63,7 +63,7 @@ void Cotrending::write(const std::filesystem::path& file, std::span<const Target
   writer.write_column(0, 0, time);
   for (std::size_t k = 0; k < trends_.trends(); ++k) {
     const std::span<const double> trend = trends_.trend(k);
-    writer.write_column(static_cast<int>(k) + 1, 0, std::vector<double>(trend.begin(), trend.end()));
+    writer.write_column(k + 1, 0, std::vector<double>(trend.begin(), trend.end()));
   }
 
   std::size_t longest = 1;
@@ -88,7 +88,7 @@ void Cotrending::write(const std::filesystem::path& file, std::span<const Target
   writer.write_column(1, 0, column([](const TrendFit& fit) { return fit.rms_before; }));
   writer.write_column(2, 0, column([](const TrendFit& fit) { return fit.rms_after; }));
   for (std::size_t k = 0; k < trends_.trends(); ++k)
-    writer.write_column(static_cast<int>(k) + 3, 0, column([k](const TrendFit& fit) { return fit.amplitude[k]; }));
+    writer.write_column(k + 3, 0, column([k](const TrendFit& fit) { return fit.amplitude[k]; }));
 
   const std::span<const double> values = trends_.eigenvalues();
   writer.begin_table({{"EIGENVALUE", FitsNumber::kFloat64}}, "EIGENVALUES", static_cast<std::int64_t>(values.size()));

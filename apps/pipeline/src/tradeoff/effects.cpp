@@ -117,6 +117,7 @@ std::vector<TradeoffRow> sweep_series(const Mission& mission, double exposure_se
   if (own >= 2.0 && std::ranges::find(lengths, own) == lengths.end()) lengths.push_back(own);
   std::ranges::sort(lengths);
   std::vector<TradeoffRow> rows;
+  rows.reserve(lengths.size());
   for (const double bins : lengths)
     rows.push_back({.sweep = Sweep::kSeries,
                     .setting = fmt::format("{:g} bins", bins),

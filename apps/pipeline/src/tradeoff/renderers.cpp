@@ -30,7 +30,7 @@ PixelPosition place(int k) {
 }
 
 double light(const PixelPsf& psf, PixelPosition star) {
-  std::array<double, kMaskSide * kMaskSide> fractions{};
+  std::array<double, std::size_t{kMaskSide} * kMaskSide> fractions{};
   psf.integrate(star, {-kMaskSide / 2, -kMaskSide / 2, kMaskSide, kMaskSide}, fractions);
   double sum = 0.0;
   for (const double f : fractions) sum += f;
