@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "astroid/core/error.hpp"
+#include "astroid/core/math.hpp"
 
 namespace astroid {
 
@@ -76,6 +77,7 @@ std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> deriva
   const std::array<double, kAxes> r{reach.yaw, reach.pitch, reach.roll, 1.0};
   const int highest_of_time = reach.slow.px > 0.0 ? highest : 0;
   std::vector<Candidate> candidates;
+  std::array<double, std::size(kFactorials)> of_order{};
   left_out = 0.0;
   for (int i = 0; i <= highest; ++i)
     for (int j = 0; i + j <= highest; ++j)
@@ -89,8 +91,18 @@ std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> deriva
           if (l == 2) bound *= 2.0;
           if (i + j + k + l == 0 || !(bound > 0.0)) continue;
           candidates.push_back({powers, bound});
+          of_order[static_cast<std::size_t>(i + j + k + l)] += bound;
           left_out += bound;
         }
+  // Orders whose derivatives are not known, if they go on falling as the last ones did.
+  const auto last = static_cast<std::size_t>(highest);
+  double beyond = 0.0;
+  if (last >= 2 && of_order[last] > 0.0) {
+    const double fall = det::sqrt(of_order[last] / of_order[last - 2]);
+    if (!(fall < 1.0)) return {};
+    beyond = of_order[last] * fall / (1.0 - fall);
+  }
+  left_out += beyond;
   std::vector<AttitudePowers> terms{{0, 0, 0, 0}};
   while (left_out > allowed) {
     if (terms.size() == most) return {};
@@ -102,7 +114,7 @@ std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> deriva
     if (best == candidates.end()) return {};
     terms.push_back(best->powers);
     candidates.erase(best);
-    left_out = 0.0;
+    left_out = beyond;
     for (const Candidate& c : candidates) left_out += c.bound;
   }
   return terms;

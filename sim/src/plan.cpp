@@ -57,6 +57,18 @@ std::vector<StampTier> plan_stamps(const Scene& scene, double share, double& err
   return stamps;
 }
 
+/// Stamps of stars that are broadened, by their motion within an exposure or as the PSF breathes.
+void widen_stamps(const Scene& scene, Plan& plan) {
+  if (scene.mission().psf.stamp_half_width.value() > 0.0) return;
+  constexpr double kRestless = 2.0;  // an exposure's motion over its rms
+  constexpr double kWidths = 8.0;    // of a Gaussian, that a stamp is wide at most
+  const double motion =
+      plan.knobs.jitter == JitterTreatment::kBroadened ? kRestless * scene.summary().attitude_rms_in_exposure_px : 0.0;
+  const double blur = plan.runs("breathing") ? scene.mission().psf.breathing.amplitude.value() : 0.0;
+  for (StampTier& tier : plan.knobs.stamps)
+    tier.half_width = det::hypot(tier.half_width, kWidths * det::hypot(motion, blur));
+}
+
 std::string describe_delivered(const Scene& scene) {
   const CcdSettings& ccd = scene.mission().ccd;
   if (ccd.window > 0)
@@ -215,6 +227,7 @@ Plan make_plan(const Scene& scene, const CostFactors& costs, int least_attitude_
   if (moves) plan_bands(scene, plan);
   if (moves && steady) plan_polynomial(scene, kAccuracyShares.jitter, plan);
   plan_slow_motion(scene, kAccuracyShares.jitter, plan_epochs(scene, plan, false), plan);
+  widen_stamps(scene, plan);
   plan_memory(scene, plan);
   plan.pixels = describe_pixels(scene, plan);
   note_coarse_converter(scene, plan.approximations);
