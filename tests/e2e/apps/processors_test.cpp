@@ -143,7 +143,7 @@ std::vector<Case> cases() {
   const Words table = {"PSF/Model=table", "PSF/File=psf.fits", "StellarField/Catalogue=field.csv", "CCD/Columns=75",
                        "CCD/Rows=61"};
   const Words two = {"Telescope/SimulatedCameras=2"};
-  const Words moves = {"Satellite/Jitter/Yaw=1"};
+  const Words moves = {"Satellite/Jitter/Yaw=0.3"};
   const std::string polynomial = "polynomial in the attitude";
   const std::string broadened = "shift and broadening";
   return {{"Sparse", "mask", two, "analytic", "shift"},
