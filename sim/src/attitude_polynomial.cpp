@@ -91,7 +91,8 @@ std::vector<AttitudePowers> choose_attitude_terms(std::span<const double> deriva
           if (l == 2) bound *= 2.0;
           if (i + j + k + l == 0 || !(bound > 0.0)) continue;
           candidates.push_back({powers, bound});
-          of_order[static_cast<std::size_t>(i + j + k + l)] += bound;
+          const int order = i + j + k + l;
+          of_order[static_cast<std::size_t>(order)] += bound;
           left_out += bound;
         }
   // Orders whose derivatives are not known, if they go on falling as the last ones did.
