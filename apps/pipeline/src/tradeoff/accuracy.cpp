@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 
 #include "astroid/pipeline/calibrate.hpp"
 #include "astroid/sim/simulator.hpp"
-#include "sweeps.hpp"
+#include "target_sums.hpp"
 
 namespace astroid::tradeoff {
 
@@ -48,21 +47,8 @@ std::vector<double> lights(const Simulator& simulator) {
   for (const std::int64_t exposure : exposures_of(scene.mission())) {
     simulator.expect(exposure, state);
     const auto& whole = std::as_const(state.expected).whole();
-    const std::span<const Rectangle> regions = whole.layout().regions();
-    for (const std::size_t target : scene.targets()) {
-      const PixelPosition p = scene.stars()[target].position;
-      const Rectangle mask{static_cast<int>(std::lround(p.x)) - kMaskSide / 2,
-                           static_cast<int>(std::lround(p.y)) - kMaskSide / 2, kMaskSide, kMaskSide};
-      double sum = std::numeric_limits<double>::quiet_NaN();
-      for (std::size_t r = 0; r < regions.size() && std::isnan(sum); ++r) {
-        if (intersect(regions[r], mask).size() != mask.size()) continue;
-        sum = 0.0;
-        const auto view = whole.view(r);
-        for (int y = mask.y0; y < mask.y1(); ++y)
-          for (int x = mask.x0; x < mask.x1(); ++x) sum += view.at(x, y);
-      }
-      sums.push_back(sum);
-    }
+    append_target_sums(
+        scene, whole.layout(), [&](std::size_t region, int x, int y) { return whole.view(region).at(x, y); }, sums);
   }
   return sums;
 }

@@ -8,7 +8,7 @@
 
 #include "astroid/core/statistics/quantiles.hpp"
 #include "astroid/sim/simulator.hpp"
-#include "sweeps.hpp"
+#include "target_sums.hpp"
 
 namespace astroid::tradeoff {
 
@@ -35,25 +35,12 @@ std::vector<double> fluxes(const Simulator& simulator) {
   for (std::int64_t k = 0; k < std::min(kExposures, scene.mission().simulation.exposures); ++k) {
     simulator.simulate(k, state);
     const Frame& frame = state.frame;
-    const std::span<const Rectangle> regions = frame.pixels.layout().regions();
-    for (const std::size_t target : scene.targets()) {
-      const PixelPosition p = scene.stars()[target].position;
-      const Rectangle mask{static_cast<int>(std::lround(p.x)) - kMaskSide / 2,
-                           static_cast<int>(std::lround(p.y)) - kMaskSide / 2, kMaskSide, kMaskSide};
-      double sum = std::numeric_limits<double>::quiet_NaN();
-      for (std::size_t r = 0; r < regions.size() && std::isnan(sum); ++r) {
-        if (intersect(regions[r], mask).size() != mask.size()) continue;
-        sum = 0.0;
-        for (int y = mask.y0; y < mask.y1(); ++y)
-          for (int x = mask.x0; x < mask.x1(); ++x) {
-            const bool full = (frame.flags.view(r).at(x, y) & (pixel_flag::kFullWell | pixel_flag::kAdcSaturated)) != 0;
-            sum += full ? std::numeric_limits<double>::quiet_NaN()
-                        : ccd.gain.value() * (static_cast<double>(frame.pixels.view(r).at(x, y)) - ccd.bias.value());
-          }
-        if (std::isnan(sum)) break;
-      }
-      sums.push_back(sum);
-    }
+    const auto electrons = [&](std::size_t region, int x, int y) {
+      const bool full = (frame.flags.view(region).at(x, y) & (pixel_flag::kFullWell | pixel_flag::kAdcSaturated)) != 0;
+      return full ? std::numeric_limits<double>::quiet_NaN()
+                  : ccd.gain.value() * (static_cast<double>(frame.pixels.view(region).at(x, y)) - ccd.bias.value());
+    };
+    append_target_sums(scene, frame.pixels.layout(), electrons, sums);
   }
   return sums;
 }

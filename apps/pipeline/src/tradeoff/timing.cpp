@@ -1,6 +1,6 @@
-#include <algorithm>
 #include <vector>
 
+#include "astroid/core/statistics/quantiles.hpp"
 #include "sweeps.hpp"
 
 namespace astroid::tradeoff {
@@ -22,9 +22,7 @@ double median_seconds(const std::function<void()>& call, double seconds) {
     times.push_back(cpu_seconds() - begin);
     total += times.back();
   }
-  const auto middle = times.begin() + static_cast<std::ptrdiff_t>(times.size() / 2);
-  std::nth_element(times.begin(), middle, times.end());
-  return *middle;
+  return quantile(times, 0.5).value;
 }
 
 }  // namespace astroid::tradeoff
