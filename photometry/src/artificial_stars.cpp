@@ -12,6 +12,7 @@
 #include "astroid/core/error.hpp"
 #include "astroid/core/math.hpp"
 #include "astroid/core/random.hpp"
+#include "astroid/core/statistics/robust.hpp"
 
 namespace astroid {
 
@@ -25,18 +26,6 @@ struct AddedStar {
   PixelPosition place{0.0, 0.0};
   double flux = 0.0;  // e-, expected
 };
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
-double robust_width(std::vector<double> values, double middle) {
-  constexpr double kSigmaPerMedian = 1.4826022185056018;
-  for (double& v : values) v = std::abs(v - middle);
-  return kSigmaPerMedian * median(std::move(values));
-}
 
 void check(const ArtificialStarSettings& s) {
   if (s.stars > 0 && s.faintest > 0.0 && s.brightest > s.faintest && s.bin > 0.0 && s.spacing >= 1.0 && s.match > 0.0)
@@ -174,11 +163,13 @@ std::vector<CompletenessBin> add_artificial_stars(
   }
   constexpr std::size_t kFewest = 5;
   for (std::size_t i = 0; i < count; ++i) {
-    const bool enough = sums[i].magnitude.size() >= kFewest && sums[i].pull.size() >= kFewest;
-    bins[i].magnitude_error = enough ? median(sums[i].magnitude) : kNaN;
-    bins[i].magnitude_scatter = enough ? robust_width(sums[i].magnitude, bins[i].magnitude_error) : kNaN;
-    bins[i].pull = enough ? median(sums[i].pull) : kNaN;
-    bins[i].pull_width = enough ? robust_width(sums[i].pull, bins[i].pull) : kNaN;
+    if (sums[i].magnitude.size() < kFewest || sums[i].pull.size() < kFewest) continue;
+    const RobustSpread magnitude = robust_spread(sums[i].magnitude);
+    const RobustSpread pull = robust_spread(sums[i].pull);
+    bins[i].magnitude_error = magnitude.centre;
+    bins[i].magnitude_scatter = magnitude.value;
+    bins[i].pull = pull.centre;
+    bins[i].pull_width = pull.value;
   }
   return bins;
 }

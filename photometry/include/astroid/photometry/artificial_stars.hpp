@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -31,10 +32,11 @@ struct CompletenessBin {
   double faintest = 0.0;   ///< e-
   std::size_t added = 0;
   std::size_t found = 0;
-  double magnitude_error = 0.0;    ///< median of measured - true, mag; NaN where fewer than 5 were found
-  double magnitude_scatter = 0.0;  ///< robust, mag
-  double pull = 0.0;               ///< median of (measured - true) / flux_err
-  double pull_width = 0.0;         ///< robust
+  // NaN where fewer than 5 were found.
+  double magnitude_error = std::numeric_limits<double>::quiet_NaN();    ///< median of measured - true, mag
+  double magnitude_scatter = std::numeric_limits<double>::quiet_NaN();  ///< robust, mag
+  double pull = std::numeric_limits<double>::quiet_NaN();               ///< median of (measured - true) / flux_err
+  double pull_width = std::numeric_limits<double>::quiet_NaN();         ///< robust
 
   [[nodiscard]] double completeness() const;
   /// Binomial, of Laplace's rule: never 0.
